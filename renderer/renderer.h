@@ -1,0 +1,149 @@
+// The renderer: a headless GL context that draws views of one scene at a time.
+//
+// Runs on the render thread: every function here, unless it says otherwise, is called from the
+// thread that called renderer_create(). Higher layers include this header and the plain-data
+// headers it includes, nothing else of the renderer.
+#ifndef VOXCAST_RENDERER_RENDERER_H
+#define VOXCAST_RENDERER_RENDERER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "renderer/error.h"
+#include "renderer/log.h"
+#include "renderer/scene/ray_scene.h"
+#include "renderer/scene/scene.h"
+#include "renderer/scene/scene_load.h"
+#include "renderer/settings.h"
+
+#define RENDERER_MAX_VIEWS      64u
+#define RENDERER_MAX_PASSES     32u
+#define RENDERER_MAX_EFFECTS    32u
+#define RENDERER_FRAMES_IN_RING 3u
+
+struct renderer;
+struct view;
+
+struct renderer_params {
+    const char *gpu;        // "auto" (or NULL), "software", or a device index such as "0"
+    const char *shader_dir; // NULL: VOXCAST_SHADER_DIR, the installed folder, or the source tree
+    bool watch_shaders;     // reload shaders when their files change
+};
+
+struct renderer_info {
+    char gl_renderer[128];
+    char gl_version[128];
+    char egl_device[128];
+    bool software;          // llvmpipe or another CPU rasteriser
+    bool gpu_timers;        // timer queries can be trusted for compute dispatches
+    float max_anisotropy;
+    uint32_t max_texture_edge;
+};
+
+// NULL with a message that names what is missing and what to install.
+struct renderer *renderer_create(const struct renderer_params *params, struct error *out_error);
+void renderer_destroy(struct renderer **renderer);
+const struct renderer_info *renderer_get_info(const struct renderer *renderer);
+
+// Errors that GL reported through its debug callback since creation; tests want 0.
+uint64_t renderer_gl_error_count(const struct renderer *renderer);
+
+// Shows `scene` from now on; uploads it. The scene stays the caller's, must outlive its use here,
+// and is edited by the caller between calls: its revisions tell what to upload again. On failure
+// the former scene stays. NULL shows nothing.
+bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct error *out_error);
+
+// One camera's pictures and history. At most RENDERER_MAX_VIEWS; NULL beyond or out of memory.
+struct view *renderer_view_create(struct renderer *renderer);
+void renderer_view_destroy(struct renderer *renderer, struct view **view);
+
+enum frame_output {
+    FRAME_OUTPUT_YCBCR,  // planar full-range BT.601 Y, Cb, Cr, 4:2:0, tonemapped: what JPEG wants
+    FRAME_OUTPUT_RGBA8,  // tonemapped sRGB, 4 bytes a pixel
+    FRAME_OUTPUT_LINEAR, // 4 floats a pixel: linear Rec.709 radiance in cd/m^2, no exposure
+};
+
+struct frame_params {
+    struct view_camera camera;
+    uint32_t width;
+    uint32_t height;
+    enum quality quality;
+    enum debug_view debug_view;
+    enum frame_output output;
+    struct render_settings settings;
+    uint64_t user_id; // handed back with the pixels
+};
+
+enum render_result {
+    RENDER_DRAWN,     // pixels will come by renderer_view_collect()
+    RENDER_UNCHANGED, // nothing has changed since the last drawn frame: nothing ran
+    RENDER_BUSY,      // all RENDERER_FRAMES_IN_RING frames wait to be collected
+    RENDER_FAILED,
+};
+
+// Draws one frame and starts its readback; does not wait for the GPU.
+enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
+                                      const struct frame_params *params, struct error *out_error);
+
+// Pictures in host memory. Row 0 at the top. Planes of FRAME_OUTPUT_YCBCR: Y of width x height,
+// Cb and Cr of (width+1)/2 x (height+1)/2; other outputs have one plane.
+struct frame_pixels {
+    uint64_t user_id;
+    uint32_t width;
+    uint32_t height;
+    enum frame_output output;
+    const uint8_t *planes[3];
+    uint32_t row_pitch_bytes[3];
+    double frame_time_ms; // wall time from the call of renderer_view_draw to the pixels being here
+};
+
+// The oldest finished frame, or false if none is ready (with `wait`: if none is under way). The
+// pixels stay valid until renderer_view_release() with the same view; collect one at a time.
+bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wait,
+                           struct frame_pixels *out_pixels);
+void renderer_view_release(struct renderer *renderer, struct view *view);
+
+struct pass_statistics {
+    const char *name;
+    bool ran;           // in the newest frame
+    double time_ms;     // of the newest frame whose timers have arrived
+    const char *reason; // why it was skipped; "" when it ran
+};
+
+struct effect_statistics {
+    const char *name;
+    bool on;
+    char reason[96]; // in words, e.g. "no transparent material in the scene"
+};
+
+struct memory_statistics {
+    const char *name; // such as "textures", "geometry", "shadow_maps", "view_targets"
+    uint64_t bytes;
+};
+
+struct frame_statistics {
+    uint32_t pass_count;
+    struct pass_statistics passes[RENDERER_MAX_PASSES];
+    uint32_t effect_count;
+    struct effect_statistics effects[RENDERER_MAX_EFFECTS];
+    uint32_t memory_count;
+    struct memory_statistics memory[16];
+    double frame_time_ms; // of the newest collected frame
+    float exposure;       // scale in use
+    uint32_t render_width, render_height;
+};
+
+void renderer_view_get_statistics(const struct renderer *renderer, const struct view *view,
+                                  struct frame_statistics *out_statistics);
+
+// Casts a ray through the centre of pixel (x, y) of a view of the given camera and size. False if
+// it hits nothing. The first call after a geometry change builds the BVH.
+bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, uint32_t width,
+                   uint32_t height, float x, float y, struct ray_hit *out_hit);
+
+// Reloads changed shaders if watching; cheap. Returns how many programs were rebuilt; when one
+// fails, the last good one stays, the message is logged and put into `out_error`.
+uint32_t renderer_poll_shaders(struct renderer *renderer, struct error *out_error);
+
+#endif

@@ -1,0 +1,31 @@
+#include "renderer/scene/image.h"
+
+#include <stdlib.h>
+
+struct image *image_create(uint32_t width, uint32_t height, uint8_t *rgba)
+{
+    struct image *image = calloc(1, sizeof(*image));
+    if (!image)
+        return NULL;
+    atomic_init(&image->references, 1);
+    image->width = width;
+    image->height = height;
+    image->rgba = rgba;
+    return image;
+}
+
+struct image *image_retain(struct image *image)
+{
+    atomic_fetch_add(&image->references, 1);
+    return image;
+}
+
+void image_release(struct image **image)
+{
+    struct image *released = *image;
+    *image = NULL;
+    if (!released || atomic_fetch_sub(&released->references, 1) != 1)
+        return;
+    free(released->rgba);
+    free(released);
+}
