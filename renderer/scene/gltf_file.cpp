@@ -96,7 +96,9 @@ static json parse_json(byte_range text)
     try {
         return json::parse(text.data, text.data + text.size);
     } catch (const json::exception &failure) {
-        import_fail("not valid JSON: %.300s", failure.what());
+        std::string cause = failure.what();
+        cause = cause.substr(0, cause.find("; last read")); // may not be UTF-8
+        import_fail("not valid JSON: %.300s", cause.c_str());
     }
 }
 
@@ -229,6 +231,7 @@ void gltf_read_document(gltf_import &import, const uint8_t *bytes, size_t size)
     }
     import.json = parse_json(text);
     gltf_check_json(import.json);
+    gltf_check_extensions(import);
     read_buffers(import, bin);
     for (json &buffer : import.json["buffers"]) {
         buffer.erase("uri"); // may be large, and is read

@@ -499,51 +499,60 @@ static bool is_supported(const std::string &extension)
 }
 
 // Required, but every texture that uses it has a picture in a core format as well.
-static bool has_fallback(const gltf_import &import, const std::string &extension)
+static bool has_fallback(const json &root, const std::string &extension)
 {
     if (extension != "KHR_texture_basisu") {
         return false;
     }
-    for (const tinygltf::Texture &texture : import.model.textures) {
-        if (texture.source < 0 && texture.extensions.count(extension) > 0) {
+    const json none = json::array();
+    for (const json &texture : root.value("textures", none)) {
+        if (!texture.contains("source") && texture.contains("extensions") &&
+            texture["extensions"].contains(extension)) {
             return false;
         }
     }
     return true;
 }
 
-// Compressed geometry without an uncompressed copy, whatever the file calls required. Streams that
-// are there next to plain data are refused too: which of the two is meant cannot be told.
-static void check_compression(const gltf_import &import)
+static void refuse_extension(const json &object, const char *extension)
 {
-    for (const tinygltf::BufferView &view : import.model.bufferViews) {
-        if (view.extensions.count("EXT_meshopt_compression") > 0) {
-            import_fail("EXT_meshopt_compression is not supported: export without compression");
-        }
+    if (object.contains("extensions") && object["extensions"].contains(extension)) {
+        import_fail("%s is not supported: export the scene without compression", extension);
     }
-    for (const tinygltf::Mesh &mesh : import.model.meshes) {
-        for (const tinygltf::Primitive &primitive : mesh.primitives) {
-            if (primitive.extensions.count("KHR_draco_mesh_compression") > 0) {
-                import_fail("KHR_draco_mesh_compression is not supported: export without "
-                            "compression");
-            }
+}
+
+// Compressed geometry is refused even where the file does not call it required: whether the plain
+// data beside it is a copy or a stub cannot be told.
+static void check_compression(const json &root)
+{
+    const json none = json::array();
+    for (const json &view : root.value("bufferViews", none)) {
+        refuse_extension(view, "EXT_meshopt_compression");
+    }
+    for (const json &mesh : root.value("meshes", none)) {
+        for (const json &primitive : mesh["primitives"]) {
+            refuse_extension(primitive, "KHR_draco_mesh_compression");
         }
     }
 }
 
 void gltf_check_extensions(gltf_import &import)
 {
-    for (const std::string &extension : import.model.extensionsRequired) {
-        if (!is_supported(extension) && !has_fallback(import, extension)) {
+    const json none = json::array();
+    const json &root = import.json;
+    for (const json &name : root.value("extensionsRequired", none)) {
+        const std::string extension = name;
+        if (!is_supported(extension) && !has_fallback(root, extension)) {
             import_fail("requires the extension %s, which is not supported",
                         import_short_name(extension, 80).c_str());
         }
     }
-    check_compression(import);
-    for (const std::string &extension : import.model.extensionsUsed) {
+    check_compression(root);
+    for (const json &name : root.value("extensionsUsed", none)) {
+        const std::string extension = name;
         if (!is_supported(extension)) {
-            scene_add_warning(import.scene, "extension %s is ignored",
-                              import_short_name(extension, 80).c_str());
+            gltf_warn_once(import, "extension %s is ignored",
+                           import_short_name(extension, 80).c_str());
         }
     }
 }

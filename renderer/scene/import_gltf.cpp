@@ -102,7 +102,6 @@ static void import_document(gltf_import &import, const uint8_t *bytes, size_t si
 {
     gltf_read_document(import, bytes, size);
     map_to_model(import);
-    gltf_check_extensions(import);
     gltf_check_accessors(import);
     gltf_read_images(import);
     gltf_import_materials(import);
