@@ -24,7 +24,11 @@
 #define TIME_LIMIT_S    10
 #define MEMORY_LIMIT_KB (1l << 20)
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if !defined(__has_feature)
+#define __has_feature(feature) 0
+#endif
+#if __has_feature(address_sanitizer) || defined(__SANITIZE_ADDRESS__) ||                           \
+    defined(__SANITIZE_THREAD__)
 #define UNDER_SANITIZER 1
 #else
 #define UNDER_SANITIZER 0
