@@ -9,7 +9,6 @@ void log_set_level(enum log_level level);
 
 // Writes one line such as "level=info event=scene_loaded triangles=36". `format` begins with the
 // event's name: log_write(LOG_INFO, "scene_loaded triangles=%u", count).
-void log_write(enum log_level level, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+void log_write(enum log_level level, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #endif

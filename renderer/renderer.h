@@ -35,8 +35,8 @@ struct renderer_info {
     char gl_renderer[128];
     char gl_version[128];
     char egl_device[128];
-    bool software;          // llvmpipe or another CPU rasteriser
-    bool gpu_timers;        // timer queries can be trusted for compute dispatches
+    bool software;   // llvmpipe or another CPU rasteriser
+    bool gpu_timers; // timer queries can be trusted for compute dispatches
     float max_anisotropy;
     uint32_t max_texture_edge;
 };

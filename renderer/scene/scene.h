@@ -90,7 +90,8 @@ struct scene_material {
     float occlusion_strength;
     float emissive[3]; // 0..1, times emissive_strength in cd/m^2
     float emissive_strength;
-    float ior; // 1 means no dielectric specular; 0 is the glTF backward-compatibility value (F0 = 1)
+    float
+        ior; // 1 means no dielectric specular; 0 is the glTF backward-compatibility value (F0 = 1)
     float specular;
     float specular_color[3];
     float transmission;
@@ -171,8 +172,8 @@ struct scene_camera {
 
 struct scene_environment {
     enum scene_environment_type type;
-    float intensity;       // multiplies the colours below or the picture; result in cd/m^2
-    float color[3];        // constant colour, or the gradient's zenith
+    float intensity; // multiplies the colours below or the picture; result in cd/m^2
+    float color[3];  // constant colour, or the gradient's zenith
     float horizon_color[3];
     float ground_color[3];
     float rotation_rad; // about +Y
@@ -208,7 +209,7 @@ struct scene_revisions {
 
 struct scene {
     char name[128];
-    char *source_path; // canonical path, or "builtin:NAME"; owned
+    char *source_path;   // canonical path, or "builtin:NAME"; owned
     char **source_files; // canonical paths of every file read, for hot reload; owned
     uint32_t source_file_count;
     char *warnings[SCENE_MAX_WARNINGS]; // what the loader ignored or mended; owned
@@ -283,8 +284,7 @@ bool scene_add_source_file(struct scene *scene, const char *path);
 void scene_set_node_transform(struct scene *scene, uint32_t node, const float translation[3],
                               const float rotation[4], const float scale[3]);
 void scene_set_node_visible(struct scene *scene, uint32_t node, bool visible);
-void scene_set_material(struct scene *scene, uint32_t material,
-                        const struct scene_material *value);
+void scene_set_material(struct scene *scene, uint32_t material, const struct scene_material *value);
 void scene_set_light(struct scene *scene, uint32_t light, const struct scene_light *value);
 
 // World-space placement of a light: moves its node.

@@ -5,10 +5,11 @@
 #include "renderer/error.h"
 #include "renderer/scene/scene.h"
 
-// `source` is a file path, or "builtin:NAME" with a name of scene_builtin_name(). The file's kind is
-// told by its content and extension. Files that a scene names must lie in the scene file's folder
-// or below. Returns a scene with world transforms computed, which the caller owns; or NULL with a
-// message that says what is wrong, where, and the allowed range. Thread-safe; blocks on disk.
+// `source` is a file path, or "builtin:NAME" with a name of scene_builtin_name(). The file's kind
+// is told by its content and extension. Files that a scene names must lie in the scene file's
+// folder or below. Returns a scene with world transforms computed, which the caller owns; or NULL
+// with a message that says what is wrong, where, and the allowed range. Thread-safe; blocks on
+// disk.
 struct scene *scene_load(const char *source, struct error *out_error);
 
 // The importers that scene_load() chooses from.
