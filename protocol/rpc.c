@@ -19,7 +19,6 @@ bool rpc_error_set(struct rpc_error *error, int code, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(error->message, sizeof(error->message), format, arguments);
     va_end(arguments);
-    utf8_mend(error->message); // what it quotes may have been cut within a character
     return false;
 }
 
@@ -32,14 +31,11 @@ bool rpc_error_field(struct rpc_error *error, const char *field, const cJSON *va
     va_start(arguments, format);
     vsnprintf(error->message, sizeof(error->message), format, arguments);
     va_end(arguments);
-    utf8_mend(error->message); // what it quotes may have been cut within a character
     snprintf(error->field, sizeof(error->field), "%s", field);
     char *json = value ? cJSON_PrintUnformatted(value) : NULL;
     if (json)
         snprintf(error->value, sizeof(error->value), "%s", json);
     free(json);
-    utf8_mend(error->field);
-    utf8_mend(error->value);
     return false;
 }
 
@@ -140,6 +136,9 @@ static char *print_and_delete(cJSON *message)
 {
     char *text = cJSON_PrintUnformatted(message);
     cJSON_Delete(message);
+    // Names from files, and texts cut to fit a buffer, may not be valid; a browser would hang up.
+    if (text)
+        utf8_mend(text);
     return text;
 }
 
