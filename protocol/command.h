@@ -45,9 +45,9 @@ enum method_flags {
 struct command {
     enum method method;
     struct rpc_id id;
-    uint32_t client_id;  // filled by the server
-    uint64_t arrived_us; // likewise
-    uint32_t target;     // `id` or `image`
+    uint32_t client_id; // filled by the server
+    bool viewer;        // likewise: may not edit
+    uint32_t target;    // `id` or `image`
     bool has_edit_id;
     uint64_t edit_id;
     bool transient;
