@@ -1,0 +1,82 @@
+// The methods of the protocol and their parameters, checked and turned into plain data. Pure.
+#ifndef VOXCAST_PROTOCOL_COMMAND_H
+#define VOXCAST_PROTOCOL_COMMAND_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "protocol/limits.h"
+#include "protocol/parameter_value.h"
+#include "protocol/parameters.h"
+#include "protocol/rpc.h"
+
+enum method {
+    METHOD_SESSION_HELLO,
+    METHOD_SCENE_GET,
+    METHOD_SCENE_LIST,
+    METHOD_SCENE_LOAD,
+    METHOD_TEXTURE_GET,
+    METHOD_CAMERA_SET,
+    METHOD_VIEW_CONFIGURE,
+    METHOD_LIGHT_ADD,
+    METHOD_LIGHT_UPDATE,
+    METHOD_LIGHT_REMOVE,
+    METHOD_MATERIAL_UPDATE,
+    METHOD_NODE_UPDATE,
+    METHOD_ENVIRONMENT_UPDATE,
+    METHOD_SETTINGS_UPDATE,
+    METHOD_ANIMATION_SET,
+    METHOD_EDIT_UNDO,
+    METHOD_EDIT_REDO,
+    METHOD_PICK,
+    METHOD_FRAME_ACK,
+    METHOD_COUNT
+};
+
+enum method_flags {
+    METHOD_EDITS = 1,  // changes the shared document: not for viewers
+    METHOD_MERGES = 2, // a newer one of the same client, target and fields replaces a waiting one
+};
+
+#define COMMAND_MAX_VALUES     24u
+#define COMMAND_MAX_SUPERSEDED 32u
+#define COMMAND_NO_TARGET      UINT32_MAX
+
+struct command {
+    enum method method;
+    struct rpc_id id;
+    uint32_t client_id; // filled by the server
+    bool viewer;        // likewise: may not edit
+    uint32_t target;    // `id` or `image`
+    bool has_edit_id;
+    uint64_t edit_id;
+    bool transient;
+    bool has_revision;
+    uint64_t revision; // of camera.set; frame_id of frame.ack
+    bool has_resume;   // both of the following came
+    uint64_t resume_epoch, resume_revision;
+    double x, y; // of pick
+    char name[PROTOCOL_MAX_NAME_BYTES + 1];
+    char token[PROTOCOL_MAX_TOKEN_BYTES + 1];
+    char source[PROTOCOL_MAX_SOURCE_BYTES + 1];
+    uint32_t value_count;
+    struct parameter_value values[COMMAND_MAX_VALUES];
+    uint32_t superseded_count; // edit ids that this command stands for beside its own
+    uint64_t superseded[COMMAND_MAX_SUPERSEDED];
+};
+
+const char *method_name(enum method method);
+uint32_t method_get_flags(enum method method);
+
+// The group that `set` of this method takes, or GROUP_COUNT.
+enum parameter_group method_get_group(enum method method);
+
+// Checks method and params. On failure `out_command` is undefined but for its id.
+bool command_parse(const struct rpc_request *request, struct command *out_command,
+                   struct rpc_error *out_error);
+
+// Whether `newer` makes `older` needless: a method that merges, the same client, target and set of
+// fields.
+bool command_supersedes(const struct command *newer, const struct command *older);
+
+#endif

@@ -1,0 +1,14 @@
+// UTF-8 checks. Pure.
+#ifndef VOXCAST_PROTOCOL_UTF8_H
+#define VOXCAST_PROTOCOL_UTF8_H
+
+#include <stddef.h>
+
+// Length of the sequence at `bytes`, or 0 if it is not valid or `left` cuts it: no overlong forms,
+// surrogates or places beyond U+10FFFF (Unicode 15, table 3-7). `left` is at least 1.
+size_t utf8_sequence_length(const unsigned char *bytes, size_t left);
+
+// Replaces bytes that are not valid UTF-8, as a cut text may end with, by '?'.
+void utf8_mend(char *text);
+
+#endif

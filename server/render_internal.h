@@ -1,0 +1,103 @@
+// What the files of the render thread share. Everything here runs on the render thread.
+#ifndef VOXCAST_SERVER_RENDER_INTERNAL_H
+#define VOXCAST_SERVER_RENDER_INTERNAL_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include <cjson/cJSON.h>
+
+#include "server/document.h"
+#include "server/edit.h"
+#include "server/file_watch.h"
+#include "server/render_thread.h"
+#include "server/scene_loader.h"
+
+// One client that has said hello; its place in the array is its slot of the frame stream.
+struct render_client {
+    uint32_t client_id; // 0: none
+    char name[PROTOCOL_MAX_NAME_BYTES + 1];
+    struct view *view;
+    struct view_options options;
+    uint64_t camera_revision;
+    uint64_t edit_id;
+    uint64_t frame_count;
+    bool dirty;                 // something may have changed since the newest drawn frame
+    uint64_t dirty_since_us;    // 0 when not dirty
+    bool drawing;               // drawn, not collected
+    struct frame_header header; // of the frame being drawn
+    uint64_t drawn_at_us;
+    double frames_per_second;
+    uint64_t collected_at_us;
+    bool statistics_due;
+    uint64_t statistics_at_us;
+    struct edit_history history;
+};
+
+struct render_thread {
+    struct render_thread_params params;
+    pthread_t thread;
+    atomic_bool stop;
+    pthread_mutex_t status_mutex;
+    struct render_status status;
+
+    struct renderer *renderer;
+    struct scene *scene;   // NULL until the first is ready
+    char scene_label[256]; // its source as clients know it
+    struct render_settings settings;
+    struct animation_state *animations;
+    uint64_t animated_at_us;
+    uint64_t epoch, revision;
+    struct edit_log log;
+
+    struct scene_loader *loader;
+    struct file_watch *watch;
+    char *load_source; // of the load under way
+    char load_label[256];
+    struct rpc_id load_id;   // who asked; "" for nobody
+    uint32_t load_client_id; // 0: start or hot reload
+    bool reload_wanted;
+
+    uint32_t next_client;
+    struct render_client clients[FRAME_STREAM_MAX_CLIENTS];
+};
+
+struct document render_document(struct render_thread *thread, struct render_client *client);
+
+// Replies and notifications.
+void render_reply(struct render_thread *thread, const struct command *command, cJSON *result);
+void render_reply_error(struct render_thread *thread, const struct command *command,
+                        const struct rpc_error *error);
+void render_notice(struct render_thread *thread, uint32_t client_id, const char *level,
+                   const char *message);
+cJSON *render_author(const struct render_client *client); // null without a client
+
+// render_commands.c
+void render_run_command(struct render_thread *thread, struct command *command);
+
+// render_scenes.c
+void render_start_load(struct render_thread *thread, const char *source, const char *label,
+                       const struct command *command);
+void render_poll_scenes(struct render_thread *thread);
+void render_run_scene_list(struct render_thread *thread, const struct command *command);
+void render_run_scene_load(struct render_thread *thread, const struct command *command);
+
+// Sets a client's camera to the scene's first, or to see all of it.
+void render_reset_camera(const struct scene *scene, struct view_camera *camera);
+
+// render_views.c
+struct render_client *render_find_client(struct render_thread *thread, uint32_t client_id);
+struct render_client *render_add_client(struct render_thread *thread, uint32_t client_id);
+void render_remove_gone_clients(struct render_thread *thread, bool all);
+void render_mark_dirty(struct render_thread *thread, struct render_client *client); // NULL: all
+bool render_wants_draw(struct render_thread *thread, uint32_t slot);
+bool render_draw_next(struct render_thread *thread);
+
+// Hands finished frames to the JPEG workers. With `wait`, waits for one if any is under way. True
+// if there was one.
+bool render_collect(struct render_thread *thread, bool wait);
+
+// render_statistics.c
+void render_send_statistics(struct render_thread *thread, uint32_t slot);
+
+#endif

@@ -1,0 +1,49 @@
+// The thread that owns the renderer, the scene document and all edits.
+#ifndef VOXCAST_SERVER_RENDER_THREAD_H
+#define VOXCAST_SERVER_RENDER_THREAD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "server/frame_stream.h"
+#include "server/jpeg_workers.h"
+#include "server/mailbox.h"
+#include "server/outbox.h"
+
+struct render_thread;
+
+// All outlive the thread.
+struct render_thread_params {
+    const char *gpu;
+    const char *scene_source;                          // path or "builtin:NAME"
+    const char *scene_dir;                             // what clients may load from; NULL for none
+    uint32_t message_bytes, message_rate, max_clients; // told to clients
+    struct mailbox *mailbox;
+    struct outbox *outbox;
+    struct frame_stream *stream;
+    struct jpeg_workers *workers;
+    // Called from the thread when it cannot go on: no renderer, or the first scene fails.
+    void (*failed)(void *user);
+    void *user;
+};
+
+struct render_status {
+    bool failed;
+    bool ready; // a scene is shown
+    char gl_renderer[128];
+    char scene[256];
+    uint64_t frames_drawn;
+    uint64_t draw_us; // sum, from the call to the pixels
+    uint64_t revision;
+};
+
+// NULL when out of memory or threads.
+struct render_thread *render_thread_start(const struct render_thread_params *params);
+
+// Stops and joins.
+void render_thread_destroy(struct render_thread **thread);
+
+// Any thread.
+void render_thread_get_status(struct render_thread *thread, struct render_status *out_status);
+
+#endif

@@ -1,0 +1,212 @@
+// The clients' views: whose turn it is, drawing, and handing pixels on.
+#include "server/render_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/clock.h"
+
+#define STATISTICS_INTERVAL_US 500000u
+
+struct render_client *render_find_client(struct render_thread *thread, uint32_t client_id)
+{
+    for (uint32_t i = 0; client_id && i < FRAME_STREAM_MAX_CLIENTS; i++) {
+        if (thread->clients[i].client_id == client_id)
+            return &thread->clients[i];
+    }
+    return NULL;
+}
+
+struct render_client *render_add_client(struct render_thread *thread, uint32_t client_id)
+{
+    for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
+        if (frame_stream_get_client(thread->params.stream, slot) != client_id)
+            continue;
+        struct render_client *client = &thread->clients[slot];
+        memset(client, 0, sizeof(*client));
+        client->view = renderer_view_create(thread->renderer);
+        if (!client->view)
+            return NULL;
+        client->client_id = client_id;
+        view_options_init(&client->options);
+        if (thread->scene)
+            render_reset_camera(thread->scene, &client->options.camera);
+        render_mark_dirty(thread, client);
+        return client;
+    }
+    return NULL;
+}
+
+void render_remove_gone_clients(struct render_thread *thread, bool all)
+{
+    for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
+        struct render_client *client = &thread->clients[slot];
+        if (!client->client_id ||
+            (!all && frame_stream_get_client(thread->params.stream, slot) == client->client_id))
+            continue;
+        if (client->drawing)
+            frame_stream_finish(thread->params.stream, slot, NULL);
+        renderer_view_destroy(thread->renderer, &client->view);
+        edit_history_clear(&client->history);
+        memset(client, 0, sizeof(*client));
+    }
+    frame_stream_collect_closed(thread->params.stream);
+}
+
+void render_mark_dirty(struct render_thread *thread, struct render_client *client)
+{
+    uint64_t now = clock_now_us();
+    for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
+        struct render_client *each = &thread->clients[i];
+        if (!each->client_id || (client && each != client))
+            continue;
+        each->dirty = true;
+        if (each->dirty_since_us == 0)
+            each->dirty_since_us = now;
+    }
+}
+
+bool render_wants_draw(struct render_thread *thread, uint32_t slot)
+{
+    const struct render_client *client = &thread->clients[slot];
+    return client->client_id && thread->scene && client->dirty && !client->drawing &&
+           !client->options.paused && frame_stream_wants_frame(thread->params.stream, slot);
+}
+
+static void fill_header(struct render_thread *thread, struct render_client *client,
+                        uint64_t start_us)
+{
+    client->header = (struct frame_header){
+        .flags = FRAME_CONVERGED,
+        .view_id = client->client_id,
+        .frame_id = client->frame_count + 1,
+        .scene_revision = thread->revision,
+        .edit_id = client->edit_id,
+        .camera_revision = client->camera_revision,
+        .quality = (uint8_t)client->options.quality,
+        .debug_view = (uint8_t)client->options.debug_view,
+        .epoch = (uint16_t)thread->epoch,
+        .convergence = 1.0f,
+        .queue_us = client->dirty_since_us ? (uint32_t)(start_us - client->dirty_since_us) : 0,
+        .draw_at_us = start_us,
+    };
+}
+
+static void fail_draw(struct render_thread *thread, struct render_client *client,
+                      const struct error *error)
+{
+    client->dirty = false;
+    client->dirty_since_us = 0;
+    log_write(LOG_ERROR, "draw_failed client=%u width=%u height=%u reason=\"%s\"",
+              client->client_id, client->options.width, client->options.height, error->message);
+    render_notice(thread, client->client_id, "error", error->message);
+}
+
+static bool draw(struct render_thread *thread, uint32_t slot)
+{
+    struct render_client *client = &thread->clients[slot];
+    struct frame_params params = {
+        .camera = client->options.camera,
+        .width = client->options.width,
+        .height = client->options.height,
+        .quality = client->options.quality,
+        .debug_view = client->options.debug_view,
+        .output = FRAME_OUTPUT_YCBCR,
+        .settings = thread->settings,
+        .user_id = client->frame_count + 1,
+    };
+    struct error error = {""};
+    uint64_t start = clock_now_us();
+    enum render_result result = renderer_view_draw(thread->renderer, client->view, &params, &error);
+    if (result == RENDER_FAILED) {
+        fail_draw(thread, client, &error);
+    } else if (result == RENDER_UNCHANGED) {
+        client->dirty = false;
+        client->dirty_since_us = 0;
+        if (client->statistics_due)
+            render_send_statistics(thread, slot);
+    } else if (result == RENDER_DRAWN) {
+        fill_header(thread, client, start);
+        client->dirty_since_us = 0;
+        client->drawn_at_us = clock_now_us();
+        client->header.draw_us = (uint32_t)(client->drawn_at_us - start);
+        client->frame_count++;
+        client->drawing = true;
+        frame_stream_begin(thread->params.stream, slot);
+    }
+    return result == RENDER_DRAWN;
+}
+
+bool render_draw_next(struct render_thread *thread)
+{
+    for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
+        uint32_t slot = (thread->next_client + i) % FRAME_STREAM_MAX_CLIENTS;
+        if (!render_wants_draw(thread, slot))
+            continue;
+        if (draw(thread, slot)) {
+            thread->next_client = slot + 1;
+            return true;
+        }
+    }
+    return false;
+}
+
+static void count_frame(struct render_thread *thread, struct render_client *client, uint64_t now)
+{
+    double interval_s = (double)(now - client->collected_at_us) / 1e6;
+    if (interval_s > 1.0 || interval_s <= 0.0)
+        client->frames_per_second = 0.0;
+    else if (client->frames_per_second == 0.0)
+        client->frames_per_second = 1.0 / interval_s;
+    else
+        client->frames_per_second += 0.1 * (1.0 / interval_s - client->frames_per_second);
+    client->collected_at_us = now;
+    client->statistics_due = true;
+    pthread_mutex_lock(&thread->status_mutex);
+    thread->status.frames_drawn++;
+    thread->status.draw_us += now - client->header.draw_at_us;
+    pthread_mutex_unlock(&thread->status_mutex);
+}
+
+// False if the frame is not there yet.
+static bool collect(struct render_thread *thread, uint32_t slot, bool wait)
+{
+    struct render_client *client = &thread->clients[slot];
+    struct frame_pixels pixels;
+    if (!renderer_view_collect(thread->renderer, client->view, wait, &pixels)) {
+        if (!wait)
+            return false;
+        log_write(LOG_ERROR, "frame_lost client=%u", client->client_id);
+        client->drawing = false;
+        frame_stream_finish(thread->params.stream, slot, NULL);
+        return true;
+    }
+    uint64_t now = clock_now_us();
+    client->header.readback_us = (uint32_t)(now - client->drawn_at_us);
+    jpeg_workers_submit(thread->params.workers, slot, &client->header, &pixels);
+    renderer_view_release(thread->renderer, client->view);
+    client->drawing = false;
+    count_frame(thread, client, now);
+    if (now - client->statistics_at_us >= STATISTICS_INTERVAL_US)
+        render_send_statistics(thread, slot);
+    return true;
+}
+
+bool render_collect(struct render_thread *thread, bool wait)
+{
+    bool collected = false;
+    uint32_t oldest = FRAME_STREAM_MAX_CLIENTS;
+    for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
+        const struct render_client *client = &thread->clients[slot];
+        if (!client->drawing)
+            continue;
+        if (collect(thread, slot, false))
+            collected = true;
+        else if (oldest == FRAME_STREAM_MAX_CLIENTS ||
+                 client->drawn_at_us < thread->clients[oldest].drawn_at_us)
+            oldest = slot;
+    }
+    if (wait && !collected && oldest < FRAME_STREAM_MAX_CLIENTS)
+        collected = collect(thread, oldest, true);
+    return collected;
+}
