@@ -19,9 +19,16 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
     [QUALITY_DRAFT] = {.resolution_scale = 0.5f, .texture_anisotropy = 1.0f, .shadow_taps = 1},
     [QUALITY_INTERACTIVE] = {.resolution_scale = 1.0f,
                              .texture_anisotropy = 2.0f,
-                             .shadow_taps = 4},
-    [QUALITY_HIGH] = {.resolution_scale = 1.0f, .texture_anisotropy = 8.0f, .shadow_taps = 16},
-    [QUALITY_FINAL] = {.resolution_scale = 1.0f, .texture_anisotropy = 16.0f, .shadow_taps = 32},
+                             .shadow_taps = 4,
+                             .shadow_cascades = 1},
+    [QUALITY_HIGH] = {.resolution_scale = 1.0f,
+                      .texture_anisotropy = 8.0f,
+                      .shadow_taps = 16,
+                      .shadow_cascades = 2},
+    [QUALITY_FINAL] = {.resolution_scale = 1.0f,
+                       .texture_anisotropy = 16.0f,
+                       .shadow_taps = 32,
+                       .shadow_cascades = 3},
 };
 
 void render_settings_init(struct render_settings *settings)

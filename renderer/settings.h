@@ -59,6 +59,7 @@ struct quality_level {
     float resolution_scale;   // rendered size over shown size
     float texture_anisotropy; // 1 is plain trilinear
     uint32_t shadow_taps;     // PCF taps per light and pixel
+    uint32_t shadow_cascades; // of the sun, around the camera, beside the map of the whole scene
 };
 
 extern const struct quality_level quality_levels[QUALITY_COUNT];

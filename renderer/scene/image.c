@@ -5,9 +5,10 @@
 struct image *image_create(uint32_t width, uint32_t height, uint8_t *rgba)
 {
     struct image *image = calloc(1, sizeof(*image));
-    if (!image)
+    if (!image) {
         return NULL;
-    atomic_init(&image->references, 1);
+    }
+    image->references = 1;
     image->width = width;
     image->height = height;
     image->rgba = rgba;
@@ -16,7 +17,7 @@ struct image *image_create(uint32_t width, uint32_t height, uint8_t *rgba)
 
 struct image *image_retain(struct image *image)
 {
-    atomic_fetch_add(&image->references, 1);
+    __atomic_fetch_add(&image->references, 1, __ATOMIC_RELAXED);
     return image;
 }
 
@@ -24,8 +25,9 @@ void image_release(struct image **image)
 {
     struct image *released = *image;
     *image = NULL;
-    if (!released || atomic_fetch_sub(&released->references, 1) != 1)
+    if (!released || __atomic_fetch_sub(&released->references, 1, __ATOMIC_ACQ_REL) != 1) {
         return;
+    }
     free(released->rgba);
     free(released);
 }

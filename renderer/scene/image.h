@@ -2,12 +2,11 @@
 #ifndef VOXCAST_RENDERER_SCENE_IMAGE_H
 #define VOXCAST_RENDERER_SCENE_IMAGE_H
 
-#include <stdatomic.h>
 #include <stdint.h>
 
 // 8-bit RGBA, row 0 at the top, `width` x `height` x 4 bytes, values as stored in the file.
 struct image {
-    _Atomic uint32_t references;
+    uint32_t references; // changed by atomic operations alone; plain so that C++ can include this
     uint32_t width;
     uint32_t height;
     uint8_t *rgba;

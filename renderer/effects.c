@@ -1,0 +1,99 @@
+#include "renderer/effects.h"
+
+#include <stdio.h>
+
+#include "renderer/resident/resident.h"
+
+static const struct {
+    const char *name;
+    const char *define;
+} effects[EFFECT_COUNT] = {
+    [EFFECT_TEXTURES] = {"textures", "TEXTURES"},
+    [EFFECT_ALPHA_MASK] = {"alpha_mask", "ALPHA_MASK"},
+    [EFFECT_LIGHTS] = {"lights", "LIGHTS"},
+    [EFFECT_AREA_LIGHTS] = {"area_lights", "AREA_LIGHTS"},
+    [EFFECT_SHADOWS] = {"shadows", "SHADOWS"},
+    [EFFECT_LIGHT_TILES] = {"light_tiles", "LIGHT_TILES"},
+    [EFFECT_BLINN_PHONG] = {"blinn_phong", "BLINN_PHONG"},
+    [EFFECT_ENVIRONMENT] = {"environment", "ENVIRONMENT"},
+    [EFFECT_TRANSPARENCY] = {"transparency", "TRANSPARENCY"},
+    [EFFECT_AUTO_EXPOSURE] = {"auto_exposure", "AUTO_EXPOSURE"},
+};
+
+const char *effect_name(enum effect effect)
+{
+    return effects[effect].name;
+}
+
+static void decide(struct effect_plan *plan, enum effect effect, bool on, const char *reason)
+{
+    if (on)
+        plan->bits |= EFFECT_BIT(effect);
+    snprintf(plan->reasons[effect], sizeof(plan->reasons[effect]), "%s", reason);
+}
+
+static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t count,
+                         const char *what)
+{
+    char reason[96];
+    if (count > 0)
+        snprintf(reason, sizeof(reason), "%u %s%s in the scene", count, what, count > 1 ? "s" : "");
+    else
+        snprintf(reason, sizeof(reason), "no %s in the scene", what);
+    decide(plan, effect, count > 0, reason);
+}
+
+void effects_plan(struct effect_plan *plan, const struct resident *resident,
+                  const struct frame_params *params)
+{
+    *plan = (struct effect_plan){0};
+    const struct render_settings *settings = &params->settings;
+    const struct resident_counts *counts = &resident->counts;
+    decide_count(plan, EFFECT_TEXTURES, counts->textured_materials, "textured material");
+    decide_count(plan, EFFECT_ALPHA_MASK, counts->masked_materials, "alpha-masked material");
+    decide_count(plan, EFFECT_LIGHTS, counts->lights + counts->area_lights, "light");
+    decide_count(plan, EFFECT_AREA_LIGHTS, counts->area_lights, "planar emitter");
+    decide_count(plan, EFFECT_LIGHT_TILES, counts->ranged_lights, "light of limited range");
+    decide_count(plan, EFFECT_TRANSPARENCY, counts->transparent_materials, "transparent material");
+    if (!settings->shadows)
+        decide(plan, EFFECT_SHADOWS, false, "switched off");
+    else
+        decide_count(plan, EFFECT_SHADOWS, counts->shadow_layers, "shadow view");
+    if (settings->shading_model == SHADING_MODEL_BLINN_PHONG)
+        decide(plan, EFFECT_BLINN_PHONG, true, "chosen for all materials");
+    else
+        decide_count(plan, EFFECT_BLINN_PHONG, counts->blinn_phong_materials,
+                     "Blinn-Phong material");
+    bool environment = resident->scene->environment.type != SCENE_ENVIRONMENT_NONE &&
+                       resident->scene->environment.intensity > 0.0f;
+    decide(plan, EFFECT_ENVIRONMENT, environment,
+           environment ? "the scene has an environment" : "no environment in the scene");
+    bool automatic = settings->exposure_mode == EXPOSURE_AUTOMATIC;
+    decide(plan, EFFECT_AUTO_EXPOSURE, automatic,
+           automatic ? "exposure is automatic" : "exposure is fixed");
+    if (settings->force_all_effects)
+        for (int i = 0; i < EFFECT_COUNT; i++)
+            if (i != EFFECT_AUTO_EXPOSURE && !(plan->bits & EFFECT_BIT(i)))
+                decide(plan, (enum effect)i, true, "forced");
+}
+
+void effects_write_defines(uint32_t bits, uint32_t mask, uint32_t texture_classes, char *out_text,
+                           size_t out_size)
+{
+    size_t used = 0;
+    out_text[0] = '\0';
+    for (int i = 0; i < EFFECT_COUNT; i++) {
+        if (!(mask & EFFECT_BIT(i)))
+            continue;
+        int written;
+        if (i == EFFECT_TEXTURES)
+            written =
+                snprintf(out_text + used, out_size - used, "TEXTURE_CLASSES %u\n", texture_classes);
+        else
+            written = snprintf(out_text + used, out_size - used, "%s %d\n", effects[i].define,
+                               (bits & EFFECT_BIT(i)) != 0);
+        used += (size_t)written;
+        if (used >= out_size)
+            return;
+    }
+}

@@ -1,0 +1,111 @@
+#include "renderer/gpu/buffer.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "renderer/gpu/internal.h"
+
+struct gpu_buffer {
+    struct gpu_allocation allocation;
+    GLuint name;
+    size_t size_bytes;
+    const void *mapping;
+};
+
+struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gpu_buffer_kind kind,
+                                     size_t size_bytes, const void *data)
+{
+    struct gpu_buffer *buffer = calloc(1, sizeof(*buffer));
+    if (!buffer)
+        return NULL;
+    buffer->size_bytes = size_bytes < 16 ? 16 : size_bytes;
+    gpu_account(gpu, &buffer->allocation, label, buffer->size_bytes);
+    glCreateBuffers(1, &buffer->name);
+    GLbitfield flags = GL_DYNAMIC_STORAGE_BIT;
+    if (kind == GPU_BUFFER_READBACK)
+        flags =
+            GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT | GL_CLIENT_STORAGE_BIT;
+    bool whole = data && size_bytes == buffer->size_bytes;
+    glNamedBufferStorage(buffer->name, (GLsizeiptr)buffer->size_bytes, whole ? data : NULL, flags);
+    if (gpu_take_out_of_memory())
+        goto fail;
+    glObjectLabel(GL_BUFFER, buffer->name, -1, label);
+    if (!whole)
+        gpu_buffer_clear(buffer);
+    if (data && !whole && size_bytes > 0)
+        gpu_buffer_write(buffer, 0, size_bytes, data);
+    if (kind == GPU_BUFFER_READBACK) {
+        buffer->mapping =
+            glMapNamedBufferRange(buffer->name, 0, (GLsizeiptr)buffer->size_bytes,
+                                  GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT);
+        if (!buffer->mapping)
+            goto fail;
+    }
+    return buffer;
+fail:
+    gpu_buffer_destroy(&buffer);
+    return NULL;
+}
+
+void gpu_buffer_destroy(struct gpu_buffer **buffer_slot)
+{
+    struct gpu_buffer *buffer = *buffer_slot;
+    *buffer_slot = NULL;
+    if (!buffer)
+        return;
+    glDeleteBuffers(1, &buffer->name);
+    gpu_unaccount(&buffer->allocation);
+    free(buffer);
+}
+
+size_t gpu_buffer_size_bytes(const struct gpu_buffer *buffer)
+{
+    return buffer->size_bytes;
+}
+
+void gpu_buffer_write(struct gpu_buffer *buffer, size_t offset_bytes, size_t size_bytes,
+                      const void *data)
+{
+    assert(offset_bytes + size_bytes <= buffer->size_bytes);
+    if (size_bytes > 0)
+        glNamedBufferSubData(buffer->name, (GLintptr)offset_bytes, (GLsizeiptr)size_bytes, data);
+}
+
+void gpu_buffer_clear(struct gpu_buffer *buffer)
+{
+    glClearNamedBufferData(buffer->name, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, NULL);
+}
+
+void gpu_buffer_copy(struct gpu_buffer *target, size_t target_offset_bytes,
+                     const struct gpu_buffer *source, size_t source_offset_bytes, size_t size_bytes)
+{
+    glCopyNamedBufferSubData(source->name, target->name, (GLintptr)source_offset_bytes,
+                             (GLintptr)target_offset_bytes, (GLsizeiptr)size_bytes);
+}
+
+void gpu_buffer_read(const struct gpu_buffer *buffer, size_t offset_bytes, size_t size_bytes,
+                     void *out_data)
+{
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(buffer->name, (GLintptr)offset_bytes, (GLsizeiptr)size_bytes, out_data);
+}
+
+const void *gpu_buffer_mapping(const struct gpu_buffer *buffer)
+{
+    return buffer->mapping;
+}
+
+bool gpu_buffer_ensure(struct gpu *gpu, struct gpu_buffer **buffer, const char *label,
+                       enum gpu_buffer_kind kind, size_t size_bytes)
+{
+    if (*buffer && (*buffer)->size_bytes >= size_bytes)
+        return true;
+    gpu_buffer_destroy(buffer);
+    *buffer = gpu_buffer_create(gpu, label, kind, size_bytes, NULL);
+    return *buffer != NULL;
+}
+
+uint32_t gpu_buffer_name(const struct gpu_buffer *buffer)
+{
+    return buffer->name;
+}

@@ -1,0 +1,40 @@
+// GPU buffers with immutable storage.
+#ifndef VOXCAST_RENDERER_GPU_BUFFER_H
+#define VOXCAST_RENDERER_GPU_BUFFER_H
+
+#include "renderer/gpu/gpu.h"
+
+enum gpu_buffer_kind {
+    GPU_BUFFER_STATIC,   // written by gpu_buffer_write() or by shaders
+    GPU_BUFFER_READBACK, // mapped for reading all its life
+};
+
+// `label` is kept as the GL object label and counts in gpu_memory_bytes(). Contents start as
+// `data` or zero. A size of 0 is raised to 16 bytes, so that it can be bound. NULL when GL is out
+// of memory.
+struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gpu_buffer_kind kind,
+                                     size_t size_bytes, const void *data);
+void gpu_buffer_destroy(struct gpu_buffer **buffer);
+size_t gpu_buffer_size_bytes(const struct gpu_buffer *buffer);
+void gpu_buffer_write(struct gpu_buffer *buffer, size_t offset_bytes, size_t size_bytes,
+                      const void *data);
+void gpu_buffer_clear(struct gpu_buffer *buffer);
+void gpu_buffer_copy(struct gpu_buffer *target, size_t target_offset_bytes,
+                     const struct gpu_buffer *source, size_t source_offset_bytes,
+                     size_t size_bytes);
+
+// Copies a buffer's bytes to host memory and waits for the GPU: for tests and small results.
+void gpu_buffer_read(const struct gpu_buffer *buffer, size_t offset_bytes, size_t size_bytes,
+                     void *out_data);
+
+// The mapping of a GPU_BUFFER_READBACK; read it once a fence after the copy is done.
+const void *gpu_buffer_mapping(const struct gpu_buffer *buffer);
+
+// The buffer if it exists and is large enough, else a new one in its place. False when out of
+// memory (*buffer is then NULL).
+bool gpu_buffer_ensure(struct gpu *gpu, struct gpu_buffer **buffer, const char *label,
+                       enum gpu_buffer_kind kind, size_t size_bytes);
+
+uint32_t gpu_buffer_name(const struct gpu_buffer *buffer);
+
+#endif

@@ -1,0 +1,145 @@
+// Opens a headless EGL context: a device-platform display (NVIDIA, Mesa) or a surfaceless one.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/gpu/internal.h"
+
+#define MAX_EGL_DEVICES 16
+
+static const char *const install_hint =
+    "install libegl1 and a GL driver (Debian: apt install libegl1 libgl1-mesa-dri)";
+
+static bool display_open_context(struct gpu *gpu, EGLDisplay display)
+{
+    EGLint major, minor;
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor))
+        return false;
+    static const EGLint config_attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                               EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
+    static const EGLint context_attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,
+        4,
+        EGL_CONTEXT_MINOR_VERSION,
+        5,
+        EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+        EGL_CONTEXT_OPENGL_DEBUG,
+        EGL_TRUE,
+        EGL_NONE,
+    };
+    EGLConfig config = EGL_NO_CONFIG_KHR;
+    EGLint config_count = 0;
+    if (!epoxy_has_egl_extension(display, "EGL_KHR_no_config_context") &&
+        (!eglChooseConfig(display, config_attributes, &config, 1, &config_count) ||
+         config_count == 0))
+        goto fail;
+    if (!eglBindAPI(EGL_OPENGL_API))
+        goto fail;
+    gpu->context = eglCreateContext(display, config, EGL_NO_CONTEXT, context_attributes);
+    if (gpu->context == EGL_NO_CONTEXT)
+        goto fail;
+    if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, gpu->context)) {
+        eglDestroyContext(display, gpu->context);
+        gpu->context = EGL_NO_CONTEXT;
+        goto fail;
+    }
+    gpu->display = display;
+    return true;
+fail:
+    eglTerminate(display);
+    return false;
+}
+
+static bool device_is_software(EGLDeviceEXT device)
+{
+    const char *extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    return extensions && strstr(extensions, "EGL_MESA_device_software");
+}
+
+static bool open_device(struct gpu *gpu, EGLDeviceEXT device, int index)
+{
+    EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL);
+    if (!display_open_context(gpu, display))
+        return false;
+    const char *path = NULL;
+    const char *extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    if (extensions && strstr(extensions, "EGL_EXT_device_drm"))
+        path = eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT);
+    snprintf(gpu->info.egl_device, sizeof(gpu->info.egl_device), "device %d%s%s", index,
+             path ? " " : "", path ? path : "");
+    return true;
+}
+
+static bool open_surfaceless(struct gpu *gpu, const char *client_extensions)
+{
+    if (!client_extensions || !strstr(client_extensions, "EGL_MESA_platform_surfaceless"))
+        return false;
+    EGLDisplay display =
+        eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
+    if (!display_open_context(gpu, display))
+        return false;
+    snprintf(gpu->info.egl_device, sizeof(gpu->info.egl_device), "surfaceless");
+    return true;
+}
+
+// Devices in the order of preference for "auto" (hardware first) or those of the wanted kind.
+static bool open_by_kind(struct gpu *gpu, const EGLDeviceEXT *devices, int count, bool hardware,
+                         bool software)
+{
+    for (int i = 0; hardware && i < count; i++)
+        if (!device_is_software(devices[i]) && open_device(gpu, devices[i], i))
+            return true;
+    for (int i = 0; software && i < count; i++)
+        if (device_is_software(devices[i]) && open_device(gpu, devices[i], i))
+            return true;
+    return false;
+}
+
+bool gpu_egl_open(struct gpu *gpu, const char *choice, struct error *out_error)
+{
+    gpu->display = EGL_NO_DISPLAY;
+    gpu->context = EGL_NO_CONTEXT;
+    const char *client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    EGLDeviceEXT devices[MAX_EGL_DEVICES];
+    EGLint count = 0;
+    if (client && strstr(client, "EGL_EXT_platform_device") &&
+        (strstr(client, "EGL_EXT_device_enumeration") || strstr(client, "EGL_EXT_device_base")))
+        eglQueryDevicesEXT(MAX_EGL_DEVICES, devices, &count);
+
+    if (!choice || strcmp(choice, "auto") == 0) {
+        if (open_by_kind(gpu, devices, count, true, true) || open_surfaceless(gpu, client))
+            return true;
+        return error_set(out_error,
+                         "no EGL device or surfaceless display gives an OpenGL 4.5 core context "
+                         "(%d EGL devices found); %s",
+                         count, install_hint);
+    }
+    if (strcmp(choice, "software") == 0) {
+        if (open_by_kind(gpu, devices, count, false, true))
+            return true;
+        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        if (open_surfaceless(gpu, client))
+            return true;
+        return error_set(out_error, "no software OpenGL 4.5 renderer was found; %s", install_hint);
+    }
+    char *end;
+    long index = strtol(choice, &end, 10);
+    if (*choice == '\0' || *end != '\0' || index < 0 || index >= count)
+        return error_set(out_error, "gpu is \"%s\"; allowed: auto, software, or 0 to %d", choice,
+                         count - 1);
+    if (open_device(gpu, devices[index], (int)index))
+        return true;
+    return error_set(out_error, "EGL device %ld gives no OpenGL 4.5 core context; %s", index,
+                     install_hint);
+}
+
+void gpu_egl_close(struct gpu *gpu)
+{
+    if (gpu->display == EGL_NO_DISPLAY)
+        return;
+    eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (gpu->context != EGL_NO_CONTEXT)
+        eglDestroyContext(gpu->display, gpu->context);
+    eglTerminate(gpu->display);
+}

@@ -1,0 +1,322 @@
+#include "renderer/gpu/gpu.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/gpu/buffer.h"
+#include "renderer/gpu/internal.h"
+#include "renderer/gpu/program.h"
+#include "renderer/gpu/texture.h"
+#include "renderer/gpu/timer.h"
+
+#define GL_FENCE_WAIT_NS 2000000000ull
+
+static void APIENTRY on_gl_message(GLenum source, GLenum type, GLuint id, GLenum severity,
+                                   GLsizei length, const GLchar *message, const void *user)
+{
+    (void)source;
+    (void)length;
+    struct gpu *gpu = (struct gpu *)user;
+    if (type == GL_DEBUG_TYPE_ERROR) {
+        gpu->error_count++;
+        log_write(LOG_ERROR, "gl_error id=%u message=\"%s\"", id, message);
+    } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
+        log_write(LOG_WARN, "gl_warning id=%u message=\"%s\"", id, message);
+    }
+}
+
+static void read_info(struct gpu *gpu)
+{
+    struct renderer_info *info = &gpu->info;
+    snprintf(info->gl_renderer, sizeof(info->gl_renderer), "%s",
+             (const char *)glGetString(GL_RENDERER));
+    snprintf(info->gl_version, sizeof(info->gl_version), "%s",
+             (const char *)glGetString(GL_VERSION));
+    info->software = strstr(info->gl_renderer, "llvmpipe") ||
+                     strstr(info->gl_renderer, "softpipe") || strstr(info->gl_renderer, "swr");
+    info->max_anisotropy = 1.0f;
+    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic") ||
+        epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic"))
+        glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &info->max_anisotropy);
+    GLint edge = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &edge);
+    info->max_texture_edge = (uint32_t)edge;
+}
+
+// GL limits that the shaders rely on (shaders/shared/bindings.h), all guaranteed or near by 4.5.
+static bool check_limits(struct error *out_error)
+{
+    static const struct {
+        GLenum name;
+        GLint needed;
+        const char *text;
+    } limits[] = {
+        {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 16, "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS"},
+        {GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, 16, "GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS"},
+        {GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, 8, "GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS"},
+        {GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, 2, "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS"},
+        {GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, 256, "GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS"},
+    };
+    for (size_t i = 0; i < sizeof(limits) / sizeof(limits[0]); i++) {
+        GLint value = 0;
+        glGetIntegerv(limits[i].name, &value);
+        if (value < limits[i].needed)
+            return error_set(out_error, "this GL driver offers %s = %d; at least %d is needed",
+                             limits[i].text, value, limits[i].needed);
+    }
+    return true;
+}
+
+struct gpu *gpu_create(const char *choice, const char *shader_dir, struct error *out_error)
+{
+    struct gpu *gpu = calloc(1, sizeof(*gpu));
+    if (!gpu) {
+        error_set(out_error, "out of memory");
+        return NULL;
+    }
+    snprintf(gpu->shader_dir, sizeof(gpu->shader_dir), "%s", shader_dir);
+    if (!gpu_egl_open(gpu, choice, out_error))
+        goto fail;
+    int version = epoxy_gl_version();
+    if (version < 45) {
+        error_set(out_error, "the GL driver offers OpenGL %d.%d; 4.5 core is needed", version / 10,
+                  version % 10);
+        goto fail;
+    }
+    glDebugMessageCallback(on_gl_message, gpu);
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    read_info(gpu);
+    if (!check_limits(out_error))
+        goto fail;
+    // Reversed Z in [0, 1]: floating-point depth stays precise far away.
+    glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_DEPTH_TEST);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gpu->info.gpu_timers = !gpu->info.software && gpu_timer_probe(gpu);
+    return gpu;
+fail:
+    gpu_destroy(&gpu);
+    return NULL;
+}
+
+void gpu_destroy(struct gpu **gpu_slot)
+{
+    struct gpu *gpu = *gpu_slot;
+    *gpu_slot = NULL;
+    if (!gpu)
+        return;
+    gpu_programs_destroy(gpu);
+    assert(!gpu->allocations);
+    gpu_egl_close(gpu);
+    free(gpu);
+}
+
+const struct renderer_info *gpu_get_info(const struct gpu *gpu)
+{
+    return &gpu->info;
+}
+
+const char *gpu_get_shader_dir(const struct gpu *gpu)
+{
+    return gpu->shader_dir;
+}
+
+uint64_t gpu_error_count(const struct gpu *gpu)
+{
+    return gpu->error_count;
+}
+
+void gpu_account(struct gpu *gpu, struct gpu_allocation *allocation, const char *label,
+                 uint64_t bytes)
+{
+    snprintf(allocation->label, sizeof(allocation->label), "%s", label);
+    allocation->bytes = bytes;
+    allocation->next = gpu->allocations;
+    allocation->link = &gpu->allocations;
+    if (allocation->next)
+        allocation->next->link = &allocation->next;
+    gpu->allocations = allocation;
+}
+
+void gpu_unaccount(struct gpu_allocation *allocation)
+{
+    *allocation->link = allocation->next;
+    if (allocation->next)
+        allocation->next->link = allocation->link;
+}
+
+uint64_t gpu_memory_bytes(const struct gpu *gpu, const char *prefix)
+{
+    uint64_t bytes = 0;
+    size_t length = strlen(prefix);
+    for (const struct gpu_allocation *it = gpu->allocations; it; it = it->next)
+        if (strncmp(it->label, prefix, length) == 0)
+            bytes += it->bytes;
+    return bytes;
+}
+
+bool gpu_take_out_of_memory(void)
+{
+    bool out_of_memory = false;
+    for (GLenum error; (error = glGetError()) != GL_NO_ERROR;)
+        out_of_memory = out_of_memory || error == GL_OUT_OF_MEMORY;
+    return out_of_memory;
+}
+
+void gpu_flush(struct gpu *gpu)
+{
+    (void)gpu;
+    glFlush();
+}
+
+void gpu_finish(struct gpu *gpu)
+{
+    (void)gpu;
+    glFinish();
+}
+
+void gpu_push_group(struct gpu *gpu, const char *name)
+{
+    (void)gpu;
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
+}
+
+void gpu_pop_group(struct gpu *gpu)
+{
+    (void)gpu;
+    glPopDebugGroup();
+}
+
+void gpu_bind_storage(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer)
+{
+    (void)gpu;
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot, buffer ? gpu_buffer_name(buffer) : 0);
+}
+
+void gpu_bind_uniforms(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer)
+{
+    (void)gpu;
+    glBindBufferBase(GL_UNIFORM_BUFFER, slot, gpu_buffer_name(buffer));
+}
+
+void gpu_bind_texture(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture)
+{
+    (void)gpu;
+    glBindTextureUnit(slot, texture ? gpu_texture_name(texture) : 0);
+}
+
+static void use_program(struct gpu *gpu, const struct gpu_program *program)
+{
+    uint32_t name = gpu_program_name(program);
+    if (gpu->current_program != name)
+        glUseProgram(name);
+    gpu->current_program = name;
+}
+
+void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x, uint32_t y,
+                  uint32_t z)
+{
+    if (x == 0 || y == 0 || z == 0)
+        return;
+    use_program(gpu, program);
+    glDispatchCompute(x, y, z);
+}
+
+void gpu_barrier(struct gpu *gpu)
+{
+    (void)gpu;
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+void gpu_draw_indirect(struct gpu *gpu, const struct gpu_program *program,
+                       const struct gpu_geometry *geometry, const struct gpu_buffer *draws,
+                       uint32_t first, uint32_t count, enum gpu_cull cull)
+{
+    if (count == 0)
+        return;
+    use_program(gpu, program);
+    glBindVertexArray(*(const GLuint *)geometry);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, gpu_buffer_name(draws));
+    if (cull == GPU_CULL_NONE) {
+        glDisable(GL_CULL_FACE);
+    } else {
+        glEnable(GL_CULL_FACE);
+        glCullFace(cull == GPU_CULL_BACK ? GL_BACK : GL_FRONT);
+    }
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
+                                (const void *)(uintptr_t)(first * sizeof(struct gpu_draw)),
+                                (GLsizei)count, 0);
+}
+
+void gpu_set_uint(struct gpu *gpu, const struct gpu_program *program, uint32_t location,
+                  uint32_t value)
+{
+    (void)gpu;
+    glProgramUniform1ui(gpu_program_name(program), (GLint)location, value);
+}
+
+struct gpu_geometry {
+    GLuint name;
+};
+
+struct gpu_geometry *gpu_geometry_create(struct gpu *gpu, const struct gpu_buffer *vertices,
+                                         uint32_t stride_bytes, uint32_t uv_offset_bytes,
+                                         const struct gpu_buffer *indices,
+                                         const struct gpu_buffer *instance_ids)
+{
+    (void)gpu;
+    struct gpu_geometry *geometry = calloc(1, sizeof(*geometry));
+    if (!geometry)
+        return NULL;
+    glCreateVertexArrays(1, &geometry->name);
+    GLuint name = geometry->name;
+    glObjectLabel(GL_VERTEX_ARRAY, name, -1, "geometry");
+    glVertexArrayVertexBuffer(name, 0, gpu_buffer_name(vertices), 0, (GLsizei)stride_bytes);
+    glVertexArrayVertexBuffer(name, 1, gpu_buffer_name(instance_ids), 0, sizeof(uint32_t));
+    glVertexArrayBindingDivisor(name, 1, 1);
+    glVertexArrayElementBuffer(name, gpu_buffer_name(indices));
+    glVertexArrayAttribFormat(name, 0, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(name, 0, 0);
+    glVertexArrayAttribIFormat(name, 1, 1, GL_UNSIGNED_INT, 0);
+    glVertexArrayAttribBinding(name, 1, 1);
+    glVertexArrayAttribFormat(name, 2, 4, GL_FLOAT, GL_FALSE, uv_offset_bytes);
+    glVertexArrayAttribBinding(name, 2, 0);
+    for (GLuint attribute = 0; attribute < 3; attribute++)
+        glEnableVertexArrayAttrib(name, attribute);
+    return geometry;
+}
+
+void gpu_geometry_destroy(struct gpu_geometry **geometry)
+{
+    if (*geometry)
+        glDeleteVertexArrays(1, &(*geometry)->name);
+    free(*geometry);
+    *geometry = NULL;
+}
+
+struct gpu_fence *gpu_fence_create(struct gpu *gpu)
+{
+    (void)gpu;
+    GLsync sync = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    glFlush();
+    return (struct gpu_fence *)sync;
+}
+
+bool gpu_fence_is_done(struct gpu_fence *fence, bool wait)
+{
+    GLenum result;
+    do {
+        result = glClientWaitSync((GLsync)fence, 0, wait ? GL_FENCE_WAIT_NS : 0);
+    } while (wait && result == GL_TIMEOUT_EXPIRED);
+    return result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED;
+}
+
+void gpu_fence_destroy(struct gpu_fence **fence)
+{
+    if (*fence)
+        glDeleteSync((GLsync)*fence);
+    *fence = NULL;
+}

@@ -1,0 +1,101 @@
+// The headless GL 4.5 context and the commands that passes give it. Render thread only.
+//
+// renderer/gpu/ is the only place that calls EGL or GL.
+#ifndef VOXCAST_RENDERER_GPU_GPU_H
+#define VOXCAST_RENDERER_GPU_GPU_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "renderer/error.h"
+#include "renderer/renderer.h"
+
+struct gpu;
+struct gpu_buffer;
+struct gpu_texture;
+struct gpu_program;
+struct gpu_framebuffer;
+
+// `gpu` is "auto", "software" or a device index. Fails with a message that names what is missing.
+struct gpu *gpu_create(const char *gpu, const char *shader_dir, struct error *out_error);
+void gpu_destroy(struct gpu **gpu);
+const struct renderer_info *gpu_get_info(const struct gpu *gpu);
+const char *gpu_get_shader_dir(const struct gpu *gpu);
+
+// Errors reported by the debug callback so far.
+uint64_t gpu_error_count(const struct gpu *gpu);
+
+// Bytes of all live buffers and textures whose label starts with `prefix`.
+uint64_t gpu_memory_bytes(const struct gpu *gpu, const char *prefix);
+
+void gpu_flush(struct gpu *gpu);
+void gpu_finish(struct gpu *gpu);
+
+// Debug groups, seen in captures and in debug messages.
+void gpu_push_group(struct gpu *gpu, const char *name);
+void gpu_pop_group(struct gpu *gpu);
+
+// Bindings; slots are those of shaders/shared/bindings.h.
+void gpu_bind_storage(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer);
+void gpu_bind_uniforms(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer);
+void gpu_bind_texture(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture);
+
+// Runs a compute program over x * y * z groups.
+void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x, uint32_t y,
+                  uint32_t z);
+
+// Makes writes of earlier commands visible to all later ones.
+void gpu_barrier(struct gpu *gpu);
+
+enum gpu_cull { GPU_CULL_NONE, GPU_CULL_BACK, GPU_CULL_FRONT };
+enum gpu_depth_test { GPU_DEPTH_GREATER_WRITE, GPU_DEPTH_GREATER_READ };
+
+struct gpu_raster_params {
+    const struct gpu_framebuffer *framebuffer;
+    uint32_t width;
+    uint32_t height;
+    bool clear; // colour to 0 (integers), depth to 0 (the far plane of reversed Z)
+    enum gpu_depth_test depth_test;
+    float depth_bias_slope; // glPolygonOffset, reversed Z: negative pushes away
+    float depth_bias_constant;
+};
+
+void gpu_begin_raster(struct gpu *gpu, const struct gpu_raster_params *params);
+void gpu_end_raster(struct gpu *gpu);
+
+// As the GL's DrawElementsIndirectCommand; base_instance reaches shaders as attribute 1.
+struct gpu_draw {
+    uint32_t index_count;
+    uint32_t instance_count;
+    uint32_t index_first;
+    int32_t base_vertex;
+    uint32_t base_instance;
+};
+
+// What draws read: vertices of `stride_bytes` whose position, 3 floats, comes first (attribute 0);
+// 32-bit indices; instance ids 0, 1, 2 ... (attribute 1, once per instance); texture coordinates
+// (attribute 2: 4 floats at uv_offset_bytes).
+struct gpu_geometry;
+struct gpu_geometry *gpu_geometry_create(struct gpu *gpu, const struct gpu_buffer *vertices,
+                                         uint32_t stride_bytes, uint32_t uv_offset_bytes,
+                                         const struct gpu_buffer *indices,
+                                         const struct gpu_buffer *instance_ids);
+void gpu_geometry_destroy(struct gpu_geometry **geometry);
+
+// Draws `count` commands of `draws`, starting with number `first`.
+void gpu_draw_indirect(struct gpu *gpu, const struct gpu_program *program,
+                       const struct gpu_geometry *geometry, const struct gpu_buffer *draws,
+                       uint32_t first, uint32_t count, enum gpu_cull cull);
+
+// Sets one uint uniform of a program, by explicit location.
+void gpu_set_uint(struct gpu *gpu, const struct gpu_program *program, uint32_t location,
+                  uint32_t value);
+
+// Fences: signalled when all commands before them are done.
+struct gpu_fence;
+struct gpu_fence *gpu_fence_create(struct gpu *gpu);
+bool gpu_fence_is_done(struct gpu_fence *fence, bool wait);
+void gpu_fence_destroy(struct gpu_fence **fence);
+
+#endif

@@ -1,0 +1,44 @@
+// What the files of renderer/gpu share; nobody else includes it.
+#ifndef VOXCAST_RENDERER_GPU_INTERNAL_H
+#define VOXCAST_RENDERER_GPU_INTERNAL_H
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <stdatomic.h>
+
+#include "renderer/gpu/gpu.h"
+
+#define GPU_LABEL_SIZE 48
+
+struct gpu_allocation {
+    char label[GPU_LABEL_SIZE];
+    uint64_t bytes;
+    struct gpu_allocation *next;
+    struct gpu_allocation **link; // what points here
+};
+
+struct gpu_program_library;
+
+struct gpu {
+    EGLDisplay display;
+    EGLContext context;
+    struct renderer_info info;
+    char shader_dir[1024];
+    uint64_t error_count;
+    struct gpu_allocation *allocations;
+    struct gpu_program_library *programs;
+    uint32_t current_program;
+};
+
+void gpu_account(struct gpu *gpu, struct gpu_allocation *allocation, const char *label,
+                 uint64_t bytes);
+void gpu_unaccount(struct gpu_allocation *allocation);
+
+// True and cleared if GL ran out of memory in the calls since the last check.
+bool gpu_take_out_of_memory(void);
+
+// EGL half of gpu_create(), in egl_context.c.
+bool gpu_egl_open(struct gpu *gpu, const char *choice, struct error *out_error);
+void gpu_egl_close(struct gpu *gpu);
+
+#endif

@@ -1,0 +1,265 @@
+#include "renderer/gpu/program.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include "renderer/gpu/internal.h"
+#include "renderer/gpu/shader_source.h"
+
+#define MAX_PROGRAMS        256
+#define MAX_DEFINES         512
+#define MAX_WATCHED_FOLDERS 32
+#define LOG_BYTES           8192
+
+struct gpu_program {
+    GLuint name;
+    char path[SHADER_MAX_PATH];
+    char defines[MAX_DEFINES];
+    bool stale;
+    uint32_t file_count;
+    char (*files)[SHADER_MAX_PATH];
+};
+
+struct gpu_program_library {
+    uint32_t count;
+    struct gpu_program programs[MAX_PROGRAMS];
+    int watch_fd;
+    uint32_t folder_count;
+    struct {
+        int descriptor;
+        char path[64]; // relative to the shader folder, "" or "gi/"
+    } folders[MAX_WATCHED_FOLDERS];
+};
+
+static struct gpu_program_library *library_get(struct gpu *gpu)
+{
+    if (!gpu->programs) {
+        gpu->programs = calloc(1, sizeof(*gpu->programs));
+        if (gpu->programs)
+            gpu->programs->watch_fd = -1;
+    }
+    return gpu->programs;
+}
+
+static GLuint compile_stage(GLenum stage, const struct shader_source *source, const char *path,
+                            struct error *out_error)
+{
+    GLuint shader = glCreateShader(stage);
+    const char *text = source->text;
+    glShaderSource(shader, 1, &text, NULL);
+    glCompileShader(shader);
+    GLint compiled = GL_FALSE;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (compiled)
+        return shader;
+    char log[LOG_BYTES] = "", mapped[LOG_BYTES];
+    glGetShaderInfoLog(shader, sizeof(log), NULL, log);
+    shader_source_map_log(source, log, mapped, sizeof(mapped));
+    error_set(out_error, "shader \"%s\" does not compile: %.400s", path, mapped);
+    glDeleteShader(shader);
+    return 0;
+}
+
+// Remembers the files that a program is made of, for hot reload.
+static void record_files(struct gpu_program *program, const struct shader_source *source)
+{
+    size_t total = program->file_count + source->file_count;
+    char(*grown)[SHADER_MAX_PATH] = realloc(program->files, total * SHADER_MAX_PATH);
+    if (!grown)
+        return;
+    program->files = grown;
+    memcpy(grown + program->file_count, source->files, source->file_count * SHADER_MAX_PATH);
+    program->file_count = (uint32_t)total;
+}
+
+static GLuint build_stage(struct gpu *gpu, struct gpu_program *program, GLenum stage,
+                          const char *extension, struct error *out_error)
+{
+    char path[SHADER_MAX_PATH + 8];
+    snprintf(path, sizeof(path), "%s%s", program->path, extension);
+    struct shader_source source;
+    bool read = shader_source_read(&source, gpu->shader_dir, path, program->defines, out_error);
+    record_files(program, &source);
+    if (!read)
+        return 0;
+    GLuint shader = compile_stage(stage, &source, path, out_error);
+    shader_source_finish(&source);
+    return shader;
+}
+
+// Builds a GL program object; 0 on failure. Replaces the program's list of files either way.
+static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *out_error)
+{
+    program->file_count = 0;
+    size_t length = strlen(program->path);
+    bool compute = length > 5 && strcmp(program->path + length - 5, ".comp") == 0;
+    GLuint shaders[2] = {0, 0};
+    uint32_t count = compute ? 1 : 2;
+    if (compute) {
+        shaders[0] = build_stage(gpu, program, GL_COMPUTE_SHADER, "", out_error);
+    } else {
+        shaders[0] = build_stage(gpu, program, GL_VERTEX_SHADER, ".vert", out_error);
+        if (shaders[0])
+            shaders[1] = build_stage(gpu, program, GL_FRAGMENT_SHADER, ".frag", out_error);
+    }
+    GLuint name = 0;
+    if (shaders[count - 1]) {
+        name = glCreateProgram();
+        for (uint32_t i = 0; i < count; i++)
+            glAttachShader(name, shaders[i]);
+        glLinkProgram(name);
+        GLint linked = GL_FALSE;
+        glGetProgramiv(name, GL_LINK_STATUS, &linked);
+        if (!linked) {
+            char log[LOG_BYTES] = "";
+            glGetProgramInfoLog(name, sizeof(log), NULL, log);
+            error_set(out_error, "shader \"%s\" does not link: %.400s", program->path, log);
+            glDeleteProgram(name);
+            name = 0;
+        } else {
+            glObjectLabel(GL_PROGRAM, name, -1, program->path);
+        }
+    }
+    for (uint32_t i = 0; i < count; i++)
+        if (shaders[i])
+            glDeleteShader(shaders[i]);
+    return name;
+}
+
+const struct gpu_program *gpu_program_get(struct gpu *gpu, const char *path, const char *defines,
+                                          struct error *out_error)
+{
+    struct gpu_program_library *library = library_get(gpu);
+    if (!library) {
+        error_set(out_error, "out of memory");
+        return NULL;
+    }
+    for (uint32_t i = 0; i < library->count; i++) {
+        const struct gpu_program *known = &library->programs[i];
+        if (strcmp(known->path, path) == 0 && strcmp(known->defines, defines) == 0)
+            return known;
+    }
+    if (library->count == MAX_PROGRAMS || strlen(defines) >= MAX_DEFINES) {
+        error_set(out_error, "shader \"%s\": more than %d programs", path, MAX_PROGRAMS);
+        return NULL;
+    }
+    struct gpu_program *program = &library->programs[library->count];
+    *program = (struct gpu_program){0};
+    snprintf(program->path, sizeof(program->path), "%s", path);
+    snprintf(program->defines, sizeof(program->defines), "%s", defines);
+    program->name = build(gpu, program, out_error);
+    if (!program->name) {
+        free(program->files);
+        return NULL;
+    }
+    library->count++;
+    return program;
+}
+
+static void watch_folder(struct gpu *gpu, const char *relative)
+{
+    struct gpu_program_library *library = gpu->programs;
+    if (library->folder_count == MAX_WATCHED_FOLDERS)
+        return;
+    char full[1200];
+    snprintf(full, sizeof(full), "%s/%s", gpu->shader_dir, relative);
+    int descriptor =
+        inotify_add_watch(library->watch_fd, full, IN_CLOSE_WRITE | IN_MOVED_TO | IN_DELETE);
+    if (descriptor < 0)
+        return;
+    library->folders[library->folder_count].descriptor = descriptor;
+    snprintf(library->folders[library->folder_count].path, sizeof(library->folders[0].path), "%s",
+             relative);
+    library->folder_count++;
+}
+
+void gpu_programs_watch(struct gpu *gpu)
+{
+    static const char *const folders[] = {"",    "shared/", "lib/",  "visibility/", "voxel/",
+                                          "gi/", "light/",  "post/", "debug/"};
+    struct gpu_program_library *library = library_get(gpu);
+    if (!library || library->watch_fd >= 0)
+        return;
+    library->watch_fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (library->watch_fd < 0)
+        return;
+    for (size_t i = 0; i < sizeof(folders) / sizeof(folders[0]); i++)
+        watch_folder(gpu, folders[i]);
+}
+
+int gpu_programs_watch_fd(const struct gpu *gpu)
+{
+    return gpu->programs ? gpu->programs->watch_fd : -1;
+}
+
+static void mark_stale(struct gpu_program_library *library, const struct inotify_event *event)
+{
+    const char *folder = "";
+    for (uint32_t i = 0; i < library->folder_count; i++)
+        if (library->folders[i].descriptor == event->wd)
+            folder = library->folders[i].path;
+    char path[SHADER_MAX_PATH];
+    snprintf(path, sizeof(path), "%s%s", folder, event->len ? event->name : "");
+    for (uint32_t i = 0; i < library->count; i++)
+        for (uint32_t j = 0; j < library->programs[i].file_count; j++)
+            if (strcmp(library->programs[i].files[j], path) == 0)
+                library->programs[i].stale = true;
+}
+
+uint32_t gpu_programs_reload_changed(struct gpu *gpu, struct error *out_error)
+{
+    struct gpu_program_library *library = gpu->programs;
+    if (!library || library->watch_fd < 0)
+        return 0;
+    _Alignas(struct inotify_event) char bytes[4096];
+    for (ssize_t size; (size = read(library->watch_fd, bytes, sizeof(bytes))) > 0;) {
+        for (ssize_t at = 0; at < size;) {
+            const struct inotify_event *event = (const struct inotify_event *)(bytes + at);
+            mark_stale(library, event);
+            at += (ssize_t)sizeof(*event) + event->len;
+        }
+    }
+    uint32_t rebuilt = 0;
+    for (uint32_t i = 0; i < library->count; i++) {
+        struct gpu_program *program = &library->programs[i];
+        if (!program->stale)
+            continue;
+        program->stale = false;
+        struct error error = {""};
+        GLuint name = build(gpu, program, &error);
+        if (!name) {
+            log_write(LOG_ERROR, "shader_reload_failed message=\"%s\"", error.message);
+            if (out_error)
+                *out_error = error;
+            continue;
+        }
+        glDeleteProgram(program->name);
+        program->name = name;
+        gpu->current_program = 0;
+        rebuilt++;
+    }
+    return rebuilt;
+}
+
+uint32_t gpu_program_name(const struct gpu_program *program)
+{
+    return program->name;
+}
+
+void gpu_programs_destroy(struct gpu *gpu)
+{
+    struct gpu_program_library *library = gpu->programs;
+    gpu->programs = NULL;
+    if (!library)
+        return;
+    for (uint32_t i = 0; i < library->count; i++) {
+        glDeleteProgram(library->programs[i].name);
+        free(library->programs[i].files);
+    }
+    if (library->watch_fd >= 0)
+        close(library->watch_fd);
+    free(library);
+}

@@ -1,0 +1,56 @@
+// GPU textures with immutable storage, and framebuffers of them.
+#ifndef VOXCAST_RENDERER_GPU_TEXTURE_H
+#define VOXCAST_RENDERER_GPU_TEXTURE_H
+
+#include "renderer/gpu/gpu.h"
+
+enum gpu_format {
+    GPU_FORMAT_R32UI,
+    GPU_FORMAT_DEPTH32F,
+    GPU_FORMAT_RGBA8,
+    GPU_FORMAT_SRGB8_ALPHA8,
+    GPU_FORMAT_RGBA16F,
+};
+
+enum gpu_filter {
+    GPU_FILTER_NEAREST,
+    GPU_FILTER_LINEAR,        // and mipmaps where there are any
+    GPU_FILTER_SHADOW_COMPARE // linear, comparing reference >= depth (reversed Z)
+};
+
+struct gpu_texture_params {
+    const char *label;
+    enum gpu_format format;
+    uint32_t width;
+    uint32_t height;
+    uint32_t layers; // 0: plain 2D; else a 2D array
+    uint32_t levels; // 0 means 1
+    enum gpu_filter filter;
+    bool repeat_u; // else clamp to edge
+    bool repeat_v;
+    float anisotropy; // 0 or 1: none
+};
+
+// NULL when GL is out of memory.
+struct gpu_texture *gpu_texture_create(struct gpu *gpu, const struct gpu_texture_params *params);
+void gpu_texture_destroy(struct gpu_texture **texture);
+
+// Uploads one level of one layer: tightly packed rows, 4 bytes a pixel (RGBA8 formats) or 4 floats
+// (RGBA16F).
+void gpu_texture_write(struct gpu_texture *texture, uint32_t level, uint32_t layer,
+                       const void *pixels);
+void gpu_texture_generate_levels(struct gpu_texture *texture);
+void gpu_texture_set_anisotropy(struct gpu_texture *texture, float anisotropy);
+uint32_t gpu_texture_name(const struct gpu_texture *texture);
+uint64_t gpu_texture_size_bytes(const struct gpu_texture *texture);
+uint32_t gpu_texture_layers(const struct gpu_texture *texture);
+uint32_t gpu_texture_edge(const struct gpu_texture *texture); // width in texels
+
+// One optional colour texture and one depth texture; `layer` picks from arrays.
+struct gpu_framebuffer *gpu_framebuffer_create(struct gpu *gpu, const char *label,
+                                               const struct gpu_texture *color,
+                                               const struct gpu_texture *depth,
+                                               uint32_t depth_layer);
+void gpu_framebuffer_destroy(struct gpu_framebuffer **framebuffer);
+
+#endif

@@ -1,0 +1,29 @@
+// Turns visibility ids into surface attributes.
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *gbuffer_skip_reason(const struct frame *frame)
+{
+    return frame->visibility_changed ? NULL : "camera and geometry unchanged";
+}
+
+static bool gbuffer_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    const struct gpu_program *program =
+        pass_program(frame, pass, "visibility/gbuffer.comp", "", out_error);
+    if (!program)
+        return false;
+    pass_dispatch_pixels(frame, program);
+    return true;
+}
+
+const struct pass gbuffer_pass = {
+    .name = "gbuffer",
+    .effects_used = EFFECT_BIT(EFFECT_TEXTURES),
+    .use_count = 3,
+    .uses = {{RESOURCE_IDS, ACCESS_READ},
+             {RESOURCE_DEPTH, ACCESS_READ},
+             {RESOURCE_GBUFFER, ACCESS_WRITE}},
+    .skip_reason = gbuffer_skip_reason,
+    .run = gbuffer_run,
+};

@@ -1,0 +1,89 @@
+// What a pass is, and what it is given to run. The list of passes is in passes/passes.c; the
+// executor (passes/executor.c) alone decides about order, timers, debug groups and skipping.
+#ifndef VOXCAST_RENDERER_PASSES_PASS_H
+#define VOXCAST_RENDERER_PASSES_PASS_H
+
+#include "renderer/effects.h"
+#include "renderer/gpu/gpu.h"
+#include "renderer/renderer.h"
+
+struct resident;
+struct view;
+
+enum resource {
+    RESOURCE_IDS,
+    RESOURCE_DEPTH,
+    RESOURCE_GBUFFER,
+    RESOURCE_SHADOW_MAP,
+    RESOURCE_LIGHT_MASKS,
+    RESOURCE_RADIANCE,
+    RESOURCE_FRAGMENTS,
+    RESOURCE_EXPOSURE,
+    RESOURCE_OUTPUT,
+    RESOURCE_COUNT
+};
+
+enum access { ACCESS_READ = 1, ACCESS_WRITE = 2, ACCESS_READ_WRITE = 3, ACCESS_HISTORY = 4 };
+
+#define PASS_MAX_USES 8
+
+struct resource_use {
+    enum resource resource;
+    enum access access;
+};
+
+// One frame of one view on its way through the passes.
+struct frame {
+    struct gpu *gpu;
+    struct resident *resident;
+    struct view *view;
+    const struct frame_params *params;
+    struct effect_plan plan;
+    const struct quality_level *quality;
+    uint32_t width; // rendered
+    uint32_t height;
+    uint32_t tiles_x;
+    uint32_t tiles_y;
+    bool first_draw;         // nothing of this view is on the GPU yet
+    bool visibility_changed; // camera, size, geometry, placement or materials
+};
+
+struct pass {
+    const char *name;
+    uint32_t effects_used; // EFFECT_BITs that pick this pass's shader permutation
+    uint32_t use_count;
+    struct resource_use uses[PASS_MAX_USES];
+
+    // NULL if the pass must run, else the reason in words why it need not.
+    const char *(*skip_reason)(const struct frame *frame);
+
+    // Binds, dispatches, returns; allocates nothing. False with a message if a shader fails.
+    bool (*run)(struct frame *frame, const struct pass *pass, struct error *out_error);
+};
+
+extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, light_tiles_pass,
+    environment_pass, direct_light_pass, emission_pass, transparency_pass, exposure_pass,
+    debug_view_pass, tonemap_pass, readback_pass;
+
+#define PASS_COUNT 12
+extern const struct pass *const all_passes[PASS_COUNT];
+
+// Runs the passes that are needed, in order, timing each. False with a message if one fails.
+bool passes_execute(struct frame *frame, struct error *out_error);
+
+// Tells whether every resource is written before it is read, in the order of all_passes. On
+// failure names the pass and the resource.
+bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error);
+
+// The permutation of a shader for the frame's effects, with `extra` defines ("NAME 1\n" lines).
+const struct gpu_program *pass_program(const struct frame *frame, const struct pass *pass,
+                                       const char *shader, const char *extra,
+                                       struct error *out_error);
+
+// Works out which cascades of the sun must be drawn; before the passes run.
+void shadow_map_place_cascades(struct frame *frame);
+
+// Groups of GROUP_EDGE^2 over the rendered pixels.
+void pass_dispatch_pixels(const struct frame *frame, const struct gpu_program *program);
+
+#endif

@@ -1,0 +1,141 @@
+// Renders the depth maps of lamps whose view or casters changed, and the sun's cascades around the
+// camera when it has left their margin.
+#include <math.h>
+#include <string.h>
+
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+// Each cascade is this much smaller than the next; the last is the map of the whole scene.
+#define CASCADE_RATIO 4.0f
+// A cascade is drawn again once the camera is this far from its centre, in half-edges.
+#define CASCADE_MARGIN 0.25f
+// Slope-scaled bias (glPolygonOffset) away from the light, reversed Z.
+#define BIAS_SLOPE    -1.5f
+#define BIAS_CONSTANT -2.0f
+
+static void place_cascade(struct frame *frame, uint32_t i)
+{
+    struct view *view = frame->view;
+    const struct resident *resident = frame->resident;
+    // Smallest first: with n cascades, cascade i spans the scene / ratio^(n - i).
+    float half =
+        0.5f * resident->diagonal_m * powf(CASCADE_RATIO, -(float)(view->cascade_count - i));
+    float step = half * CASCADE_MARGIN;
+    vec3 center;
+    for (int axis = 0; axis < 3; axis++)
+        center[axis] = step * roundf(frame->params->camera.eye[axis] / step);
+    float moved = 0.0f;
+    for (int axis = 0; axis < 3; axis++)
+        moved =
+            fmaxf(moved, fabsf(frame->params->camera.eye[axis] - view->cascade_center[i][axis]));
+    if (!view->cascade_stale[i] && moved <= 2.0f * step)
+        return;
+    memcpy(view->cascade_center[i], center, sizeof(center));
+    vec3 low, high;
+    glm_vec3_subs(center, half, low);
+    glm_vec3_adds(center, half, high);
+    resident_directional_view(resident->directional_axis, low, high, resident->diagonal_m,
+                              &view->cascades[i]);
+    view->cascade_stale[i] = true;
+}
+
+static bool any_stale(const struct frame *frame)
+{
+    for (uint32_t i = 0; i < frame->resident->counts.shadow_layers; i++)
+        if (frame->resident->shadow_stale[i])
+            return true;
+    for (uint32_t i = 0; i < frame->view->cascade_count; i++)
+        if (frame->view->cascade_stale[i])
+            return true;
+    return false;
+}
+
+// Called once per frame before the passes: works out which cascades must be drawn.
+void shadow_map_place_cascades(struct frame *frame)
+{
+    struct view *view = frame->view;
+    if (view->shadow_revision_seen != frame->resident->shadow_revision)
+        for (uint32_t i = 0; i < view->cascade_count; i++)
+            view->cascade_stale[i] = true;
+    for (uint32_t i = 0; i < view->cascade_count; i++)
+        place_cascade(frame, i);
+    view->shadow_revision_seen = frame->resident->shadow_revision;
+    gpu_buffer_write(view->shadow_views, 0, sizeof(frame->resident->shadow_views),
+                     frame->resident->shadow_views);
+    gpu_buffer_write(view->shadow_views, sizeof(frame->resident->shadow_views),
+                     sizeof(view->cascades), view->cascades);
+}
+
+static const char *shadow_map_skip_reason(const struct frame *frame)
+{
+    if (!(frame->plan.bits & EFFECT_BIT(EFFECT_SHADOWS)))
+        return "no light casts a shadow";
+    return any_stale(frame) ? NULL : "lights and casters unchanged";
+}
+
+static bool draw_layer(struct frame *frame, const struct pass *pass,
+                       const struct gpu_framebuffer *framebuffer, uint32_t view_number,
+                       const mat4 clip_from_world, struct error *out_error)
+{
+    struct draw_list *draws = &frame->view->shadow_draws;
+    draw_list_fill(draws, frame->resident, clip_from_world);
+    gpu_begin_raster(frame->gpu, &(struct gpu_raster_params){
+                                     .framebuffer = framebuffer,
+                                     .width = SHADOW_MAP_EDGE,
+                                     .height = SHADOW_MAP_EDGE,
+                                     .clear = true,
+                                     .depth_test = GPU_DEPTH_GREATER_WRITE,
+                                     .depth_bias_slope = BIAS_SLOPE,
+                                     .depth_bias_constant = BIAS_CONSTANT,
+                                 });
+    static const struct {
+        enum draw_kind kind;
+        const char *defines;
+    } kinds[] = {{DRAW_OPAQUE, "ALPHA_MASK 0\nSHADOW_VIEW 1\nLIST 0\n"},
+                 {DRAW_MASKED, "ALPHA_MASK 1\nSHADOW_VIEW 1\nLIST 0\n"}};
+    for (int i = 0; i < 2; i++) {
+        if (!draw_list_has(draws, kinds[i].kind))
+            continue;
+        const struct gpu_program *program =
+            pass_program(frame, pass, "visibility/visibility", kinds[i].defines, out_error);
+        if (!program)
+            return false;
+        gpu_set_uint(frame->gpu, program, 0, view_number);
+        draw_list_draw(draws, frame->resident, program, kinds[i].kind, false);
+    }
+    gpu_end_raster(frame->gpu);
+    return true;
+}
+
+static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    struct resident *resident = frame->resident;
+    struct view *view = frame->view;
+    for (uint32_t i = 0; i < resident->counts.shadow_layers; i++) {
+        if (!resident->shadow_stale[i])
+            continue;
+        if (!draw_layer(frame, pass, resident->shadow_framebuffers[i], i,
+                        resident->shadow_views[i].clip_from_world, out_error))
+            return false;
+        resident->shadow_stale[i] = false;
+    }
+    for (uint32_t i = 0; i < view->cascade_count; i++) {
+        if (!view->cascade_stale[i])
+            continue;
+        if (!draw_layer(frame, pass, view->cascade_framebuffers[i], MAX_SHADOW_LAYERS + i,
+                        view->cascades[i].clip_from_world, out_error))
+            return false;
+        view->cascade_stale[i] = false;
+    }
+    return true;
+}
+
+const struct pass shadow_map_pass = {
+    .name = "shadow_map",
+    .effects_used = EFFECT_BIT(EFFECT_TEXTURES),
+    .use_count = 1,
+    .uses = {{RESOURCE_SHADOW_MAP, ACCESS_WRITE}},
+    .skip_reason = shadow_map_skip_reason,
+    .run = shadow_map_run,
+};

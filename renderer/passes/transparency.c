@@ -1,0 +1,55 @@
+// Blended and transmissive layers, per pixel in order of depth.
+#include <string.h>
+
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *transparency_skip_reason(const struct frame *frame)
+{
+    if (!(frame->plan.bits & EFFECT_BIT(EFFECT_TRANSPARENCY)))
+        return "no transparent material in the scene";
+    if (frame->params->debug_view != DEBUG_VIEW_FINAL)
+        return "debug views show opaque surfaces";
+    return draw_list_has(&frame->view->draws, DRAW_TRANSPARENT) ? NULL : "none of it is in view";
+}
+
+static bool transparency_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    struct view *view = frame->view;
+    const struct gpu_program *list = pass_program(
+        frame, pass, "visibility/visibility", "ALPHA_MASK 0\nSHADOW_VIEW 0\nLIST 1\n", out_error);
+    const struct gpu_program *shade =
+        list ? pass_program(frame, pass, "light/transparency.comp", "", out_error) : NULL;
+    if (!shade)
+        return false;
+    gpu_buffer_clear(view->fragments);
+    uint32_t counts[4] = {0, frame->width * frame->height * BLENDED_PER_PIXEL, 0, 0};
+    gpu_buffer_write(view->fragments, 0, sizeof(counts), counts);
+    gpu_begin_raster(frame->gpu, &(struct gpu_raster_params){
+                                     .framebuffer = view->list_framebuffer,
+                                     .width = frame->width,
+                                     .height = frame->height,
+                                     .depth_test = GPU_DEPTH_GREATER_READ,
+                                 });
+    draw_list_draw(&view->draws, frame->resident, list, DRAW_TRANSPARENT, true);
+    gpu_end_raster(frame->gpu);
+    gpu_barrier(frame->gpu);
+    pass_dispatch_pixels(frame, shade);
+    return true;
+}
+
+const struct pass transparency_pass = {
+    .name = "transparency",
+    .effects_used = EFFECT_BIT(EFFECT_TEXTURES) | EFFECT_BIT(EFFECT_LIGHTS) |
+                    EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES) |
+                    EFFECT_BIT(EFFECT_AREA_LIGHTS) | EFFECT_BIT(EFFECT_BLINN_PHONG) |
+                    EFFECT_BIT(EFFECT_ENVIRONMENT),
+    .use_count = 5,
+    .uses = {{RESOURCE_DEPTH, ACCESS_READ},
+             {RESOURCE_FRAGMENTS, ACCESS_WRITE},
+             {RESOURCE_SHADOW_MAP, ACCESS_READ},
+             {RESOURCE_LIGHT_MASKS, ACCESS_READ},
+             {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
+    .skip_reason = transparency_skip_reason,
+    .run = transparency_run,
+};

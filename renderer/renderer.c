@@ -1,0 +1,397 @@
+#include "renderer/renderer.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "renderer/camera.h"
+#include "renderer/gpu/program.h"
+#include "renderer/passes/pass.h"
+#include "renderer/resident/resident.h"
+#include "renderer/view.h"
+
+// Nearest visible distance, relative to the scene's diagonal. Reversed Z keeps precision anyway.
+#define NEAR_FRACTION 1e-5f
+
+struct renderer {
+    struct gpu *gpu;
+    struct resident *resident; // NULL while nothing is shown
+    struct scene *scene;
+    uint64_t scene_number; // tells scenes apart that were loaded one after another
+    uint32_t view_count;
+    float anisotropy; // now set in the texture arrays
+    struct ray_scene *ray_scene;
+    struct scene_revisions ray_revisions;
+};
+
+static double now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+static const char *find_shader_dir(const struct renderer_params *params)
+{
+    if (params->shader_dir)
+        return params->shader_dir;
+    const char *from_environment = getenv("VOXCAST_SHADER_DIR");
+    if (from_environment && *from_environment)
+        return from_environment;
+    if (access(VOXCAST_SOURCE_DIR "/shaders/shared/bindings.h", R_OK) == 0)
+        return VOXCAST_SOURCE_DIR "/shaders";
+    return VOXCAST_INSTALL_SHARE_DIR "/shaders";
+}
+
+struct renderer *renderer_create(const struct renderer_params *params, struct error *out_error)
+{
+    struct renderer *renderer = calloc(1, sizeof(*renderer));
+    if (!renderer) {
+        error_set(out_error, "out of memory");
+        return NULL;
+    }
+    assert(passes_check(all_passes, PASS_COUNT, NULL));
+    renderer->gpu = gpu_create(params->gpu, find_shader_dir(params), out_error);
+    if (!renderer->gpu) {
+        free(renderer);
+        return NULL;
+    }
+    if (params->watch_shaders)
+        gpu_programs_watch(renderer->gpu);
+    return renderer;
+}
+
+void renderer_destroy(struct renderer **renderer_slot)
+{
+    struct renderer *renderer = *renderer_slot;
+    *renderer_slot = NULL;
+    if (!renderer)
+        return;
+    assert(renderer->view_count == 0);
+    ray_scene_destroy(&renderer->ray_scene);
+    resident_destroy(&renderer->resident);
+    gpu_destroy(&renderer->gpu);
+    free(renderer);
+}
+
+const struct renderer_info *renderer_get_info(const struct renderer *renderer)
+{
+    return gpu_get_info(renderer->gpu);
+}
+
+uint64_t renderer_gl_error_count(const struct renderer *renderer)
+{
+    return gpu_error_count(renderer->gpu);
+}
+
+bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct error *out_error)
+{
+    struct resident *resident = NULL;
+    if (scene) {
+        resident = resident_create(renderer->gpu, scene, out_error);
+        if (!resident)
+            return false;
+    }
+    ray_scene_destroy(&renderer->ray_scene);
+    resident_destroy(&renderer->resident);
+    renderer->resident = resident;
+    renderer->scene = scene;
+    renderer->scene_number++;
+    renderer->anisotropy = 0.0f;
+    return true;
+}
+
+struct view *renderer_view_create(struct renderer *renderer)
+{
+    if (renderer->view_count == RENDERER_MAX_VIEWS)
+        return NULL;
+    struct view *view = view_create(renderer->gpu);
+    if (view)
+        renderer->view_count++;
+    return view;
+}
+
+void renderer_view_destroy(struct renderer *renderer, struct view **view)
+{
+    if (*view)
+        renderer->view_count--;
+    view_destroy(view);
+}
+
+static bool params_equal(const struct frame_params *a, const struct frame_params *b)
+{
+    return memcmp(&a->camera, &b->camera, sizeof(a->camera)) == 0 && a->width == b->width &&
+           a->height == b->height && a->quality == b->quality && a->debug_view == b->debug_view &&
+           a->output == b->output && a->settings.gi_method == b->settings.gi_method &&
+           a->settings.tonemap == b->settings.tonemap &&
+           a->settings.exposure_mode == b->settings.exposure_mode &&
+           a->settings.exposure_ev == b->settings.exposure_ev &&
+           a->settings.gamma == b->settings.gamma &&
+           a->settings.shading_model == b->settings.shading_model &&
+           a->settings.shadows == b->settings.shadows &&
+           a->settings.force_all_effects == b->settings.force_all_effects;
+}
+
+static bool same_surfaces(const struct view *view, const struct frame_params *params,
+                          const struct scene_revisions *revisions)
+{
+    const struct frame_params *last = &view->last_params;
+    const struct scene_revisions *seen = &view->last_revisions;
+    return memcmp(&last->camera, &params->camera, sizeof(last->camera)) == 0 &&
+           last->width == params->width && last->height == params->height &&
+           last->quality == params->quality && seen->geometry == revisions->geometry &&
+           seen->transforms == revisions->transforms && seen->materials == revisions->materials;
+}
+
+static void fill_frame_block(const struct frame *frame, struct frame_block *block)
+{
+    const struct frame_params *params = frame->params;
+    const struct resident *resident = frame->resident;
+    const struct render_settings *settings = &params->settings;
+    struct camera_frame camera;
+    camera_frame_init(&camera, &params->camera);
+    float near_m = resident->diagonal_m * NEAR_FRACTION;
+    *block = (struct frame_block){0};
+    camera_clip_from_world(&camera, params->camera.eye,
+                           (float)params->width / (float)params->height, near_m,
+                           block->clip_from_world);
+    memcpy(block->eye, params->camera.eye, sizeof(vec3));
+    block->eye[3] = near_m;
+    memcpy(block->forward, camera.forward, sizeof(vec3));
+    // Rays span the shown picture's aspect, whatever the rendered size was rounded to.
+    float aspect = (float)params->width / (float)params->height;
+    for (int axis = 0; axis < 3; axis++) {
+        float right = camera.right[axis] * camera.tan_half_fov * aspect;
+        float up = camera.up[axis] * camera.tan_half_fov;
+        block->ray_corner[axis] = camera.forward[axis] - right + up;
+        block->ray_dx[axis] = 2.0f * right / (float)frame->width;
+        block->ray_dy[axis] = -2.0f * up / (float)frame->height;
+    }
+    size_t offsets[3];
+    uint32_t pitches[3];
+    view_output_layout(params, offsets, pitches);
+    memcpy(block->size, (uvec4){frame->width, frame->height, frame->tiles_x, frame->tiles_y},
+           sizeof(uvec4));
+    memcpy(block->shown, (uvec4){params->width, params->height, pitches[0], pitches[1]},
+           sizeof(uvec4));
+    memcpy(block->lights,
+           (uvec4){resident->counts.lights, resident->counts.area_lights,
+                   (resident->counts.lights + 31) / 32, frame->view->cascade_count},
+           sizeof(uvec4));
+    memcpy(block->options,
+           (uvec4){(uint32_t)params->debug_view, (uint32_t)settings->shading_model,
+                   frame->quality->shadow_taps, (uint32_t)settings->tonemap},
+           sizeof(uvec4));
+    bool fixed = settings->exposure_mode == EXPOSURE_FIXED;
+    block->display[0] = fixed ? exp2f(settings->exposure_ev) : 0.0f;
+    block->display[1] = settings->gamma;
+    block->display[2] = exp2f(settings->exposure_ev);
+    block->environment[0] = frame->resident->scene->environment.intensity;
+    block->environment[1] = frame->resident->scene->environment.rotation_rad;
+}
+
+static void set_anisotropy(struct renderer *renderer, float wanted)
+{
+    float anisotropy = fminf(wanted, gpu_get_info(renderer->gpu)->max_anisotropy);
+    if (renderer->anisotropy == anisotropy)
+        return;
+    for (uint32_t i = 0; i < renderer->resident->texture_class_count; i++)
+        gpu_texture_set_anisotropy(renderer->resident->texture_classes[i], anisotropy);
+    renderer->anisotropy = anisotropy;
+}
+
+static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)
+{
+    struct view *view = frame->view;
+    if (!view_prepare(view, frame->resident, frame->params, frame->plan.bits))
+        return error_set(out_error, "a view of %u x %u pixels does not fit into GPU memory",
+                         frame->params->width, frame->params->height);
+    frame->width = view->width;
+    frame->height = view->height;
+    frame->tiles_x = (view->width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
+    frame->tiles_y = (view->height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
+    struct frame_block block;
+    fill_frame_block(frame, &block);
+    gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
+    shadow_map_place_cascades(frame);
+    if (frame->visibility_changed)
+        draw_list_fill(&view->draws, frame->resident, block.clip_from_world);
+    set_anisotropy(renderer, frame->quality->texture_anisotropy);
+    resident_bind(frame->resident);
+    view_bind(view);
+    return passes_execute(frame, out_error);
+}
+
+static bool params_are_valid(const struct frame_params *params, struct error *out_error)
+{
+    if (params->width < VIEW_MIN_EDGE || params->width > VIEW_MAX_WIDTH ||
+        params->height < VIEW_MIN_EDGE || params->height > VIEW_MAX_HEIGHT)
+        return error_set(out_error, "size is %ux%u; allowed: 1x1 to %ux%u", params->width,
+                         params->height, VIEW_MAX_WIDTH, VIEW_MAX_HEIGHT);
+    const struct view_camera *camera = &params->camera;
+    for (int axis = 0; axis < 3; axis++)
+        if (!isfinite(camera->eye[axis]) || !isfinite(camera->target[axis]) ||
+            !isfinite(camera->up[axis]))
+            return error_set(out_error, "the camera's placement is not finite");
+    return isfinite(camera->fov_y_rad) || error_set(out_error, "the field of view is not finite");
+}
+
+enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
+                                      const struct frame_params *params, struct error *out_error)
+{
+    double started_ms = now_ms();
+    if (!params_are_valid(params, out_error))
+        return RENDER_FAILED;
+    if (!renderer->resident) {
+        error_set(out_error, "no scene is shown");
+        return RENDER_FAILED;
+    }
+    if (view->ring_count == RENDERER_FRAMES_IN_RING)
+        return RENDER_BUSY;
+    struct resident *resident = renderer->resident;
+    const struct scene_revisions revisions = renderer->scene->revisions;
+    bool same_scene = view->drawn && view->last_scene == renderer->scene_number;
+    if (same_scene && params_equal(&view->last_params, params) &&
+        memcmp(&view->last_revisions, &revisions, sizeof(revisions)) == 0)
+        return RENDER_UNCHANGED;
+    if (!resident_update(resident, out_error))
+        return RENDER_FAILED;
+
+    struct frame frame = {
+        .gpu = renderer->gpu,
+        .resident = resident,
+        .view = view,
+        .params = params,
+        .quality = &quality_levels[params->quality],
+        .first_draw = !view->drawn,
+        .visibility_changed = !same_scene || !same_surfaces(view, params, &revisions),
+    };
+    effects_plan(&frame.plan, resident, params);
+    if (!draw_frame(renderer, &frame, out_error)) {
+        view->drawn = false;
+        return RENDER_FAILED;
+    }
+    struct ring_frame *slot = &view->ring[view->ring_next];
+    slot->fence = gpu_fence_create(renderer->gpu);
+    slot->started_ms = started_ms;
+    slot->result = (struct frame_pixels){
+        .user_id = params->user_id,
+        .width = params->width,
+        .height = params->height,
+        .output = params->output,
+    };
+    view->ring_next = (view->ring_next + 1) % RENDERER_FRAMES_IN_RING;
+    view->ring_count++;
+    view->drawn = true;
+    view->last_params = *params;
+    view->last_revisions = revisions;
+    view->last_scene = renderer->scene_number;
+    view->last_plan = frame.plan;
+    return RENDER_DRAWN;
+}
+
+bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wait,
+                           struct frame_pixels *out_pixels)
+{
+    (void)renderer;
+    if (view->ring_count == 0)
+        return false;
+    assert(!view->collected);
+    struct ring_frame *slot = &view->ring[view->ring_oldest];
+    if (!gpu_fence_is_done(slot->fence, wait))
+        return false;
+    gpu_fence_destroy(&slot->fence);
+    struct frame_params shape = {
+        .width = slot->result.width, .height = slot->result.height, .output = slot->result.output};
+    size_t offsets[3];
+    view_output_layout(&shape, offsets, slot->result.row_pitch_bytes);
+    const uint8_t *bytes = gpu_buffer_mapping(slot->pixels);
+    for (int i = 0; i < (shape.output == FRAME_OUTPUT_YCBCR ? 3 : 1); i++)
+        slot->result.planes[i] = bytes + offsets[i];
+    slot->result.frame_time_ms = now_ms() - slot->started_ms;
+    view->last_frame_ms = slot->result.frame_time_ms;
+    view->collected = true;
+    *out_pixels = slot->result;
+    return true;
+}
+
+void renderer_view_release(struct renderer *renderer, struct view *view)
+{
+    (void)renderer;
+    assert(view->collected);
+    view->collected = false;
+    view->ring_oldest = (view->ring_oldest + 1) % RENDERER_FRAMES_IN_RING;
+    view->ring_count--;
+}
+
+static void add_memory(struct frame_statistics *statistics, const struct gpu *gpu, const char *name,
+                       const char *prefix)
+{
+    statistics->memory[statistics->memory_count++] =
+        (struct memory_statistics){.name = name, .bytes = gpu_memory_bytes(gpu, prefix)};
+}
+
+void renderer_view_get_statistics(const struct renderer *renderer, const struct view *view,
+                                  struct frame_statistics *out_statistics)
+{
+    struct frame_statistics *statistics = out_statistics;
+    *statistics = (struct frame_statistics){.pass_count = PASS_COUNT,
+                                            .effect_count = EFFECT_COUNT,
+                                            .frame_time_ms = view->last_frame_ms,
+                                            .render_width = view->width,
+                                            .render_height = view->height};
+    gpu_timer_poll(view->timer);
+    for (uint32_t i = 0; i < PASS_COUNT; i++) {
+        bool ran = view->drawn && !view->pass_skip_reasons[i];
+        statistics->passes[i] = (struct pass_statistics){
+            .name = all_passes[i]->name,
+            .ran = ran,
+            .time_ms = ran ? gpu_timer_get_ms(view->timer, i) : 0.0,
+            .reason = view->pass_skip_reasons[i] ? view->pass_skip_reasons[i] : "",
+        };
+    }
+    for (uint32_t i = 0; i < EFFECT_COUNT; i++) {
+        struct effect_statistics *effect = &statistics->effects[i];
+        effect->name = effect_name((enum effect)i);
+        effect->on = (view->last_plan.bits & EFFECT_BIT(i)) != 0;
+        memcpy(effect->reason, view->last_plan.reasons[i], sizeof(effect->reason));
+    }
+    static const char *const groups[][2] = {
+        {"geometry", "geometry"},  {"materials", "materials"},    {"textures", "textures"},
+        {"lights", "lights"},      {"shadow_maps", "shadow_map"}, {"environment", "environment"},
+        {"view_targets", "view."}, {"readback", "readback"},
+    };
+    for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
+        add_memory(statistics, renderer->gpu, groups[i][0], groups[i][1]);
+}
+
+bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, uint32_t width,
+                   uint32_t height, float x, float y, struct ray_hit *out_hit)
+{
+    if (!renderer->scene || width == 0 || height == 0)
+        return false;
+    const struct scene_revisions *now = &renderer->scene->revisions;
+    const struct scene_revisions *seen = &renderer->ray_revisions;
+    if (renderer->ray_scene && now->geometry != seen->geometry)
+        ray_scene_destroy(&renderer->ray_scene);
+    if (!renderer->ray_scene)
+        renderer->ray_scene = ray_scene_create(renderer->scene);
+    else if (now->transforms != seen->transforms)
+        ray_scene_update_transforms(renderer->ray_scene);
+    renderer->ray_revisions = *now;
+    if (!renderer->ray_scene)
+        return false;
+    struct camera_frame frame;
+    camera_frame_init(&frame, camera);
+    float direction[3];
+    camera_ray(&frame, width, height, x + 0.5f, y + 0.5f, direction);
+    return ray_scene_intersect(renderer->ray_scene, camera->eye, direction, INFINITY, out_hit);
+}
+
+uint32_t renderer_poll_shaders(struct renderer *renderer, struct error *out_error)
+{
+    return gpu_programs_reload_changed(renderer->gpu, out_error);
+}

@@ -1,0 +1,194 @@
+// Vertices, indices, instances and visibility ids.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/resident/resident.h"
+#include "renderer/scene/placement.h"
+
+static_assert(sizeof(struct scene_vertex) == VERTEX_WORDS * 4, "shaders read vertices as words");
+
+static bool upload(struct resident *resident, struct gpu_buffer **buffer, const char *label,
+                   size_t size_bytes, const void *data)
+{
+    gpu_buffer_destroy(buffer);
+    *buffer = gpu_buffer_create(resident->gpu, label, GPU_BUFFER_STATIC, size_bytes, data);
+    return *buffer != NULL;
+}
+
+static uint32_t count_instances(const struct scene *scene)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->node_count; i++)
+        if (scene->nodes[i].mesh != SCENE_NONE && !scene->nodes[i].removed)
+            count += scene->meshes[scene->nodes[i].mesh].primitive_count;
+    return count;
+}
+
+static bool upload_instance_ids(struct resident *resident, uint32_t count)
+{
+    uint32_t *ids = malloc((count ? count : 1) * sizeof(*ids));
+    if (!ids)
+        return false;
+    for (uint32_t i = 0; i < count; i++)
+        ids[i] = i;
+    bool done = upload(resident, &resident->instance_ids, "geometry.instance_ids",
+                       count * sizeof(*ids), ids);
+    free(ids);
+    return done;
+}
+
+// Gives each instance a run of visibility ids that starts at a block boundary, and tells for each
+// block whose it is.
+static bool upload_id_blocks(struct resident *resident)
+{
+    const uint32_t block_size = 1u << ID_BLOCK_BITS;
+    uint64_t block_count = 0;
+    for (uint32_t i = 0; i < resident->counts.instances; i++)
+        block_count += (resident->instances[i].index_count / 3 + block_size - 1) / block_size;
+    if (block_count >= UINT32_MAX / block_size)
+        return false;
+    uint32_t *owners = malloc((block_count ? block_count : 1) * sizeof(*owners));
+    if (!owners)
+        return false;
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < resident->counts.instances; i++) {
+        uint32_t triangles = resident->instances[i].index_count / 3;
+        for (uint32_t j = 0; j < (triangles + block_size - 1) / block_size; j++)
+            owners[at++] = i;
+    }
+    bool done = upload(resident, &resident->id_blocks, "geometry.id_blocks",
+                       block_count * sizeof(*owners), owners);
+    free(owners);
+    return done;
+}
+
+bool resident_upload_geometry(struct resident *resident)
+{
+    const struct scene *scene = resident->scene;
+    uint32_t count = count_instances(scene);
+    free(resident->instances);
+    resident->instances = calloc(count ? count : 1, sizeof(*resident->instances));
+    if (!resident->instances)
+        return false;
+    resident->counts.instances = 0;
+    for (uint32_t i = 0; i < scene->node_count; i++) {
+        const struct scene_node *node = &scene->nodes[i];
+        if (node->mesh == SCENE_NONE || node->removed)
+            continue;
+        const struct scene_mesh *mesh = &scene->meshes[node->mesh];
+        for (uint32_t j = 0; j < mesh->primitive_count; j++) {
+            const struct scene_primitive *primitive = &scene->primitives[mesh->primitive_first + j];
+            resident->instances[resident->counts.instances++] = (struct resident_instance){
+                .node = i,
+                .primitive = mesh->primitive_first + j,
+                .index_first = primitive->index_first,
+                .index_count = primitive->index_count,
+            };
+        }
+    }
+    resident->drawable = scene->index_count > 0 && count > 0;
+    gpu_geometry_destroy(&resident->geometry);
+    if (!upload(resident, &resident->vertices, "geometry.vertices",
+                scene->vertex_count * sizeof(struct scene_vertex), scene->vertices) ||
+        !upload(resident, &resident->indices, "geometry.indices",
+                scene->index_count * sizeof(uint32_t), scene->indices) ||
+        !upload_instance_ids(resident, count) || !upload_id_blocks(resident))
+        return false;
+    resident->geometry = gpu_geometry_create(
+        resident->gpu, resident->vertices, sizeof(struct scene_vertex),
+        (uint32_t)offsetof(struct scene_vertex, uv), resident->indices, resident->instance_ids);
+    return resident->geometry != NULL;
+}
+
+// The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales too.
+static void fill_instance_block(struct instance_block *block, const float matrix[16])
+{
+    memcpy(block->world_from_local, matrix, sizeof(block->world_from_local));
+    mat3 linear, cofactors;
+    glm_mat4_pick3(block->world_from_local, linear);
+    glm_vec3_cross(linear[1], linear[2], cofactors[0]);
+    glm_vec3_cross(linear[2], linear[0], cofactors[1]);
+    glm_vec3_cross(linear[0], linear[1], cofactors[2]);
+    float determinant = glm_vec3_dot(linear[0], cofactors[0]);
+    float sign = determinant < 0.0f ? -1.0f : 1.0f;
+    // Scaled towards 1, so that products stay within the range of floats.
+    float largest = 0.0f;
+    for (int i = 0; i < 9; i++)
+        largest = fmaxf(largest, fabsf(((float *)cofactors)[i]));
+    float scale = largest > 0.0f && isfinite(largest) ? sign / largest : sign;
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++)
+            block->normal_rows[row][column] = cofactors[column][row] * scale;
+    block->info[3] = determinant < 0.0f ? INSTANCE_MIRRORED : 0;
+}
+
+static uint8_t group_of(const struct scene_material *material, bool mirrored)
+{
+    enum draw_kind kind = DRAW_OPAQUE;
+    if (material->alpha_mode == SCENE_ALPHA_BLEND || material->transmission > 0.0f)
+        kind = DRAW_TRANSPARENT;
+    else if (material->alpha_mode == SCENE_ALPHA_MASK)
+        kind = DRAW_MASKED;
+    enum gpu_cull cull = mirrored ? GPU_CULL_FRONT : GPU_CULL_BACK;
+    if (material->double_sided)
+        cull = GPU_CULL_NONE;
+    return (uint8_t)((int)kind * DRAW_CULL_COUNT + (int)cull);
+}
+
+static void place_instance(struct resident *resident, struct resident_instance *instance,
+                           struct instance_block *block, uint32_t first_id)
+{
+    const struct scene *scene = resident->scene;
+    const struct scene_node *node = &scene->nodes[instance->node];
+    const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
+    fill_instance_block(block, node->world_from_local);
+    block->info[0] = instance->index_first;
+    block->info[1] = primitive->material;
+    block->info[2] = first_id;
+    block->source[0] = instance->node;
+    block->source[1] = instance->primitive;
+    instance->visible = node->world_visible && instance->index_count > 0;
+    instance->group =
+        group_of(&scene->materials[primitive->material], (block->info[3] & INSTANCE_MIRRORED) != 0);
+    double low[3], high[3];
+    placement_transform_box(node->world_from_local, primitive->bounds_min, primitive->bounds_max,
+                            low, high);
+    for (int axis = 0; axis < 3; axis++) {
+        instance->bounds_min[axis] = (float)low[axis];
+        instance->bounds_max[axis] = (float)high[axis];
+        if (instance->visible) {
+            resident->bounds_min[axis] =
+                fminf(resident->bounds_min[axis], instance->bounds_min[axis]);
+            resident->bounds_max[axis] =
+                fmaxf(resident->bounds_max[axis], instance->bounds_max[axis]);
+        }
+    }
+}
+
+bool resident_upload_instances(struct resident *resident)
+{
+    uint32_t count = resident->counts.instances;
+    struct instance_block *blocks = calloc(count ? count : 1, sizeof(*blocks));
+    if (!blocks)
+        return false;
+    for (int axis = 0; axis < 3; axis++) {
+        resident->bounds_min[axis] = INFINITY;
+        resident->bounds_max[axis] = -INFINITY;
+    }
+    const uint32_t block_size = 1u << ID_BLOCK_BITS;
+    uint32_t first_id = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        place_instance(resident, &resident->instances[i], &blocks[i], first_id);
+        uint32_t triangles = resident->instances[i].index_count / 3;
+        first_id += (triangles + block_size - 1) / block_size * block_size;
+    }
+    float diagonal = glm_vec3_distance(resident->bounds_min, resident->bounds_max);
+    resident->diagonal_m = isfinite(diagonal) && diagonal > 0.0f ? diagonal : 1.0f;
+    bool done = gpu_buffer_ensure(resident->gpu, &resident->instance_blocks, "geometry.instances",
+                                  GPU_BUFFER_STATIC, count * sizeof(*blocks));
+    if (done)
+        gpu_buffer_write(resident->instance_blocks, 0, count * sizeof(*blocks), blocks);
+    free(blocks);
+    return done;
+}

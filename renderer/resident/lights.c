@@ -1,0 +1,254 @@
+// The light tables and the views of their shadow maps.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/resident/resident.h"
+#include "renderer/scene/placement.h"
+
+// Cube faces and spots see a little more than they need, for the filter's taps at the rim.
+#define SHADOW_FACE_MARGIN  1.02f
+#define MAX_SPOT_SHADOW_FOV 2.9f // radians; a wider cone gets a cube
+
+// Nearest shadow caster of a lamp, relative to the scene's diagonal.
+#define SHADOW_NEAR_FRACTION 1e-4f
+
+struct light_builder {
+    struct resident *resident;
+    struct shadow_view_block views[MAX_SHADOW_LAYERS];
+    uint32_t layers;
+};
+
+// Reversed, infinite Z: depth = near / distance.
+static void perspective_from(const float origin[3], const float forward[3], const float up[3],
+                             float fov_rad, float near_m, mat4 out_clip_from_world)
+{
+    mat4 view_from_world, clip_from_view;
+    vec3 target;
+    glm_vec3_add((float *)origin, (float *)forward, target);
+    glm_lookat_rh((float *)origin, target, (float *)up, view_from_world);
+    glm_mat4_zero(clip_from_view);
+    float focal = 1.0f / tanf(0.5f * fov_rad);
+    clip_from_view[0][0] = focal;
+    clip_from_view[1][1] = focal;
+    clip_from_view[2][3] = -1.0f;
+    clip_from_view[3][2] = near_m;
+    glm_mat4_mul(clip_from_view, view_from_world, out_clip_from_world);
+}
+
+static void add_perspective_view(struct light_builder *builder, const float origin[3],
+                                 const float forward[3], const float up[3], float fov_rad)
+{
+    struct shadow_view_block *view = &builder->views[builder->layers++];
+    *view = (struct shadow_view_block){0};
+    float near_m = builder->resident->diagonal_m * SHADOW_NEAR_FRACTION;
+    perspective_from(origin, forward, up, fov_rad, near_m, view->clip_from_world);
+    view->texel[0] = 2.0f * tanf(0.5f * fov_rad) / (float)SHADOW_MAP_EDGE;
+    view->texel[3] = 1.0f;
+    view->depth[0] = near_m;
+}
+
+static void add_cube_views(struct light_builder *builder, const float origin[3])
+{
+    // In the order of cube_face() in shaders/lib/shadow.glsl.
+    static const float axes[6][2][3] = {
+        {{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}},
+        {{0, -1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}},
+    };
+    float fov = 2.0f * atanf(SHADOW_FACE_MARGIN);
+    for (int face = 0; face < 6; face++)
+        add_perspective_view(builder, origin, axes[face][0], axes[face][1], fov);
+}
+
+void resident_directional_view(const float axis[3], const float box_min[3], const float box_max[3],
+                               float near_reach_m, struct shadow_view_block *out_view)
+{
+    vec3 up = {0.0f, 1.0f, 0.0f};
+    if (fabsf(axis[1]) > 0.9f)
+        up[0] = 1.0f, up[1] = 0.0f;
+    mat4 view_from_world;
+    glm_lookat_rh((vec3){0, 0, 0}, (float *)axis, up, view_from_world);
+    double low[3], high[3];
+    placement_transform_box((const float *)view_from_world, box_min, box_max, low, high);
+    high[2] += near_reach_m; // casters may stand nearer to the sun than what they shade
+    *out_view = (struct shadow_view_block){0};
+    mat4 clip_from_view;
+    glm_mat4_zero(clip_from_view);
+    double size[3];
+    for (int axis_number = 0; axis_number < 3; axis_number++)
+        size[axis_number] = fmax(high[axis_number] - low[axis_number], 1e-6) * 1.01;
+    clip_from_view[0][0] = (float)(2.0 / size[0]);
+    clip_from_view[1][1] = (float)(2.0 / size[1]);
+    clip_from_view[3][0] = (float)(-(high[0] + low[0]) / size[0]);
+    clip_from_view[3][1] = (float)(-(high[1] + low[1]) / size[1]);
+    // View z is towards the sun: its largest value gets depth 1.
+    clip_from_view[2][2] = (float)(1.0 / size[2]);
+    clip_from_view[3][2] = (float)(0.5 - 0.5 * (high[2] + low[2]) / size[2]);
+    clip_from_view[3][3] = 1.0f;
+    glm_mat4_mul(clip_from_view, view_from_world, out_view->clip_from_world);
+    out_view->texel[0] = (float)(fmax(size[0], size[1]) / SHADOW_MAP_EDGE);
+    out_view->depth[0] = (float)size[2];
+}
+
+static bool light_is_lit(const struct scene *scene, const struct scene_light *light)
+{
+    return light->enabled && !light->removed && light->intensity > 0.0f &&
+           (light->color[0] > 0.0f || light->color[1] > 0.0f || light->color[2] > 0.0f) &&
+           scene->nodes[light->node].world_visible;
+}
+
+static void fill_light_block(struct light_block *block, const struct scene *scene, uint32_t id)
+{
+    const struct scene_light *light = &scene->lights[id];
+    *block = (struct light_block){0};
+    scene_get_light_placement(scene, id, block->position, block->direction);
+    static const float types[] = {
+        [SCENE_LIGHT_DIRECTIONAL] = LIGHT_DIRECTIONAL,
+        [SCENE_LIGHT_POINT] = LIGHT_POINT,
+        [SCENE_LIGHT_SPOT] = LIGHT_SPOT,
+    };
+    block->position[3] = types[light->type];
+    block->direction[3] = light->type == SCENE_LIGHT_DIRECTIONAL ? 0.0f : light->range_m;
+    for (int c = 0; c < 3; c++)
+        block->radiance[c] = light->color[c] * light->intensity;
+    block->radiance[3] = light->radius_m;
+    float inner = cosf(light->inner_cone_rad), outer = cosf(light->outer_cone_rad);
+    block->cone[0] = 1.0f / fmaxf(0.001f, inner - outer);
+    block->cone[1] = -outer * block->cone[0];
+    block->cone[2] = outer;
+    block->shadow[0] = NO_SHADOW;
+    block->shadow[2] = id;
+}
+
+static void add_light_shadow(struct light_builder *builder, struct light_block *block,
+                             const struct scene_light *light)
+{
+    struct resident *resident = builder->resident;
+    if (!light->casts_shadow || !resident->drawable || !isfinite(resident->bounds_min[0]))
+        return;
+    float fov = 2.0f * light->outer_cone_rad * SHADOW_FACE_MARGIN + 0.02f;
+    bool spot = light->type == SCENE_LIGHT_SPOT && fov < MAX_SPOT_SHADOW_FOV;
+    bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
+    uint32_t needed = directional || spot ? 1 : 6;
+    if (builder->layers + needed > MAX_SHADOW_LAYERS)
+        return;
+    block->shadow[0] = builder->layers;
+    block->shadow[1] = needed;
+    if (directional) {
+        resident_directional_view(block->direction, resident->bounds_min, resident->bounds_max,
+                                  0.0f, &builder->views[builder->layers++]);
+        if (resident->directional_light == NO_SHADOW) {
+            resident->directional_light = block->shadow[2];
+            memcpy(resident->directional_axis, block->direction, sizeof(vec3));
+            block->shadow[3] = 1;
+        }
+    } else if (spot) {
+        vec3 up = {0.0f, 1.0f, 0.0f};
+        if (fabsf(block->direction[1]) > 0.9f)
+            up[0] = 1.0f, up[1] = 0.0f;
+        add_perspective_view(builder, block->position, block->direction, up, fov);
+    } else {
+        add_cube_views(builder, block->position);
+    }
+}
+
+static void add_area_light_shadow(struct light_builder *builder, struct area_light_block *light)
+{
+    light->shadow[0] = NO_SHADOW;
+    if (builder->layers + 6 > MAX_SHADOW_LAYERS)
+        return;
+    light->shadow[0] = builder->layers;
+    light->shadow[1] = 6;
+    // A little before the emitter, so that it does not shade itself.
+    vec3 origin;
+    float lift = 1e-3f * sqrtf(light->radiance[3]);
+    glm_vec3_scale(light->normal, lift, origin);
+    glm_vec3_add(origin, light->center, light->center);
+    add_cube_views(builder, light->center);
+}
+
+// Keeps rendered layers whose view is as it was; casters that moved make all stale elsewhere.
+static bool keep_shadow_map(struct resident *resident, const struct light_builder *builder)
+{
+    uint32_t layers = builder->layers;
+    if (!resident->shadow_map || gpu_texture_layers(resident->shadow_map) < layers) {
+        for (uint32_t i = 0; i < MAX_SHADOW_LAYERS; i++)
+            gpu_framebuffer_destroy(&resident->shadow_framebuffers[i]);
+        gpu_texture_destroy(&resident->shadow_map);
+        struct gpu_texture_params params = {
+            .label = "shadow_map",
+            .format = GPU_FORMAT_DEPTH32F,
+            .width = layers ? SHADOW_MAP_EDGE : 1,
+            .height = layers ? SHADOW_MAP_EDGE : 1,
+            .layers = layers ? layers : 1,
+            .filter = GPU_FILTER_SHADOW_COMPARE,
+        };
+        resident->shadow_map = gpu_texture_create(resident->gpu, &params);
+        if (!resident->shadow_map)
+            return false;
+        for (uint32_t i = 0; i < layers; i++) {
+            resident->shadow_framebuffers[i] =
+                gpu_framebuffer_create(resident->gpu, "shadow_map", NULL, resident->shadow_map, i);
+            if (!resident->shadow_framebuffers[i])
+                return false;
+        }
+        memset(resident->shadow_stale, true, sizeof(resident->shadow_stale));
+    }
+    for (uint32_t i = 0; i < layers; i++)
+        if (memcmp(&resident->shadow_views[i], &builder->views[i], sizeof(builder->views[i])) != 0)
+            resident->shadow_stale[i] = true;
+    memcpy(resident->shadow_views, builder->views, layers * sizeof(builder->views[0]));
+    resident->counts.shadow_layers = layers;
+    const struct scene_revisions *now = &resident->scene->revisions;
+    if (now->geometry != resident->seen.geometry || now->materials != resident->seen.materials ||
+        now->transforms != resident->seen.transforms)
+        memset(resident->shadow_stale, true, sizeof(resident->shadow_stale));
+    resident->shadow_revision++;
+    return true;
+}
+
+bool resident_upload_lights(struct resident *resident)
+{
+    const struct scene *scene = resident->scene;
+    struct light_builder *builder = calloc(1, sizeof(*builder));
+    size_t count = scene->light_count ? scene->light_count : 1;
+    struct light_block *lights = calloc(count, sizeof(*lights));
+    struct area_light_block area_lights[MAX_AREA_LIGHTS];
+    bool done = builder && lights;
+    if (done) {
+        builder->resident = resident;
+        struct resident_counts *counts = &resident->counts;
+        counts->lights = 0;
+        counts->ranged_lights = 0;
+        resident->directional_light = NO_SHADOW;
+        counts->area_lights = resident_find_area_lights(resident, area_lights);
+        // Shadow maps go to suns first, then to planar emitters, then to lamps as listed.
+        for (int round = 0; round < 2; round++) {
+            for (uint32_t i = 0; i < scene->light_count; i++) {
+                const struct scene_light *light = &scene->lights[i];
+                bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
+                if (!light_is_lit(scene, light) || directional != (round == 0))
+                    continue;
+                struct light_block *block = &lights[counts->lights++];
+                fill_light_block(block, scene, i);
+                add_light_shadow(builder, block, light);
+                counts->ranged_lights += block->direction[3] > 0.0f;
+            }
+            for (uint32_t i = 0; round == 0 && i < counts->area_lights; i++)
+                add_area_light_shadow(builder, &area_lights[i]);
+        }
+        done = gpu_buffer_ensure(resident->gpu, &resident->lights, "lights", GPU_BUFFER_STATIC,
+                                 count * sizeof(*lights)) &&
+               gpu_buffer_ensure(resident->gpu, &resident->area_lights, "lights.area",
+                                 GPU_BUFFER_STATIC, sizeof(area_lights)) &&
+               keep_shadow_map(resident, builder);
+    }
+    if (done) {
+        gpu_buffer_write(resident->lights, 0, count * sizeof(*lights), lights);
+        gpu_buffer_write(resident->area_lights, 0,
+                         resident->counts.area_lights * sizeof(*area_lights), area_lights);
+    }
+    free(builder);
+    free(lights);
+    return done;
+}

@@ -1,0 +1,105 @@
+// The material table and the textures that it refers to.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/resident/resident.h"
+
+static_assert(TEXTURE_SLOTS == SCENE_TEXTURE_SLOT_COUNT, "shaders and scene agree on slots");
+
+// Reflectance at normal incidence; glTF keeps IOR 0 for "reflects everything".
+static float f0_from_ior(float ior)
+{
+    if (ior <= 0.0f)
+        return 1.0f;
+    float ratio = (ior - 1.0f) / (ior + 1.0f);
+    return ratio * ratio;
+}
+
+static void fill_texture_block(const struct resident *resident, struct texture_block *block,
+                               const struct scene_texture *texture, bool color)
+{
+    const struct image_place *place =
+        color ? &resident->color_places[texture->image] : &resident->data_places[texture->image];
+    float c = cosf(texture->rotation_rad), s = sinf(texture->rotation_rad);
+    // KHR_texture_transform: translation * rotation * scale, rotation counter-clockwise in a frame
+    // whose v points down.
+    *block = (struct texture_block){
+        .uv_row_u = {c * texture->scale[0], s * texture->scale[1], texture->offset[0]},
+        .uv_row_v = {-s * texture->scale[0], c * texture->scale[1], texture->offset[1]},
+    };
+    struct gpu_texture *array = resident->texture_classes[place->class_number];
+    block->info[0] = place->class_number;
+    block->info[1] = place->layer;
+    block->info[2] = (texture->uv_set == 1 ? TEXTURE_UV_SET_1 : 0) |
+                     (texture->nearest ? TEXTURE_NEAREST : 0) |
+                     ((uint32_t)texture->wrap_u << TEXTURE_WRAP_U_BIT) |
+                     ((uint32_t)texture->wrap_v << TEXTURE_WRAP_V_BIT);
+    block->info[3] = gpu_texture_edge(array);
+}
+
+static void fill_material_block(struct material_block *block, const struct scene_material *material)
+{
+    memcpy(block->base_color, material->base_color, sizeof(block->base_color));
+    for (int c = 0; c < 3; c++) {
+        block->emission[c] = material->emissive[c] * material->emissive_strength;
+        block->specular_color[c] = material->specular_color[c];
+        block->attenuation_color[c] = material->attenuation_color[c];
+    }
+    block->emission[3] = material->alpha_cutoff;
+    block->surface[0] = material->metallic;
+    block->surface[1] = material->roughness;
+    block->surface[2] = material->normal_scale;
+    block->surface[3] = material->occlusion_strength;
+    block->dielectric[0] = f0_from_ior(material->ior);
+    block->dielectric[1] = material->specular;
+    block->dielectric[2] = material->transmission;
+    block->dielectric[3] = material->thickness_m;
+    block->specular_color[3] = material->attenuation_distance_m;
+    static const uint32_t shading[] = {
+        [SCENE_SHADING_PBR] = SHADE_PBR,
+        [SCENE_SHADING_BLINN_PHONG] = SHADE_BLINN_PHONG,
+        [SCENE_SHADING_UNLIT] = SHADE_UNLIT,
+    };
+    block->info[0] = shading[material->shading] |
+                     (material->double_sided ? MATERIAL_DOUBLE_SIDED : 0) |
+                     (material->alpha_mode == SCENE_ALPHA_MASK ? MATERIAL_ALPHA_MASK : 0) |
+                     (material->alpha_mode == SCENE_ALPHA_BLEND ? MATERIAL_ALPHA_BLEND : 0) |
+                     (material->ior == 1.0f ? MATERIAL_IOR_ONE : 0);
+}
+
+bool resident_upload_materials(struct resident *resident)
+{
+    const struct scene *scene = resident->scene;
+    size_t count = scene->material_count ? scene->material_count : 1;
+    struct material_block *materials = calloc(count, sizeof(*materials));
+    struct texture_block *textures = calloc(count * TEXTURE_SLOTS, sizeof(*textures));
+    bool done = materials && textures;
+    for (uint32_t i = 0; done && i < scene->material_count; i++) {
+        const struct scene_material *material = &scene->materials[i];
+        fill_material_block(&materials[i], material);
+        materials[i].info[1] = i * TEXTURE_SLOTS;
+        for (int slot = 0; slot < SCENE_TEXTURE_SLOT_COUNT; slot++) {
+            if (material->textures[slot].image >= scene->image_count)
+                continue;
+            materials[i].info[2] |= 1u << slot;
+            fill_texture_block(resident, &textures[i * TEXTURE_SLOTS + (uint32_t)slot],
+                               &material->textures[slot],
+                               slot == SCENE_TEXTURE_BASE_COLOR || slot == SCENE_TEXTURE_EMISSIVE ||
+                                   slot == SCENE_TEXTURE_SPECULAR_COLOR);
+        }
+    }
+    done = done &&
+           gpu_buffer_ensure(resident->gpu, &resident->materials, "materials", GPU_BUFFER_STATIC,
+                             count * sizeof(*materials)) &&
+           gpu_buffer_ensure(resident->gpu, &resident->texture_blocks, "materials.textures",
+                             GPU_BUFFER_STATIC, count * TEXTURE_SLOTS * sizeof(*textures));
+    if (done) {
+        gpu_buffer_write(resident->materials, 0, count * sizeof(*materials), materials);
+        gpu_buffer_write(resident->texture_blocks, 0, count * TEXTURE_SLOTS * sizeof(*textures),
+                         textures);
+    }
+    free(materials);
+    free(textures);
+    return done;
+}

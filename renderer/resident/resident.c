@@ -1,0 +1,132 @@
+#include "renderer/resident/resident.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct resident *resident_create(struct gpu *gpu, const struct scene *scene,
+                                 struct error *out_error)
+{
+    struct resident *resident = calloc(1, sizeof(*resident));
+    if (!resident) {
+        error_set(out_error, "out of memory");
+        return NULL;
+    }
+    resident->gpu = gpu;
+    resident->scene = scene;
+    if (!resident_upload_geometry(resident) || !resident_upload_textures(resident) ||
+        !resident_upload_materials(resident) || !resident_upload_instances(resident) ||
+        !resident_upload_lights(resident) || !resident_upload_environment(resident)) {
+        error_set(out_error, "scene \"%s\" does not fit into GPU memory", scene->name);
+        resident_destroy(&resident);
+        return NULL;
+    }
+    resident_count_materials(resident);
+    resident->seen = scene->revisions;
+    return resident;
+}
+
+void resident_destroy(struct resident **resident_slot)
+{
+    struct resident *resident = *resident_slot;
+    *resident_slot = NULL;
+    if (!resident)
+        return;
+    gpu_geometry_destroy(&resident->geometry);
+    gpu_buffer_destroy(&resident->vertices);
+    gpu_buffer_destroy(&resident->indices);
+    gpu_buffer_destroy(&resident->instance_ids);
+    gpu_buffer_destroy(&resident->instance_blocks);
+    gpu_buffer_destroy(&resident->id_blocks);
+    gpu_buffer_destroy(&resident->materials);
+    gpu_buffer_destroy(&resident->texture_blocks);
+    gpu_buffer_destroy(&resident->lights);
+    gpu_buffer_destroy(&resident->area_lights);
+    gpu_buffer_destroy(&resident->environment);
+    for (uint32_t i = 0; i < MAX_TEXTURE_CLASSES; i++)
+        gpu_texture_destroy(&resident->texture_classes[i]);
+    for (uint32_t i = 0; i < MAX_SHADOW_LAYERS; i++)
+        gpu_framebuffer_destroy(&resident->shadow_framebuffers[i]);
+    gpu_texture_destroy(&resident->shadow_map);
+    gpu_texture_destroy(&resident->environment_levels);
+    gpu_texture_destroy(&resident->environment_background);
+    free(resident->instances);
+    free(resident->color_places);
+    free(resident->data_places);
+    free(resident);
+}
+
+bool resident_update(struct resident *resident, struct error *out_error)
+{
+    const struct scene_revisions *now = &resident->scene->revisions;
+    struct scene_revisions *seen = &resident->seen;
+    bool geometry = now->geometry != seen->geometry;
+    bool materials = now->materials != seen->materials;
+    bool transforms = now->transforms != seen->transforms;
+    bool lights = now->lights != seen->lights;
+    bool done = true;
+    if (geometry)
+        done = done && resident_upload_geometry(resident) && resident_upload_textures(resident);
+    if (geometry || materials)
+        done = done && resident_upload_materials(resident);
+    if (geometry || materials || transforms)
+        done = done && resident_upload_instances(resident);
+    if (geometry || materials || transforms || lights)
+        done = done && resident_upload_lights(resident);
+    if (now->environment != seen->environment)
+        done = done && resident_upload_environment(resident);
+    resident_count_materials(resident);
+    if (!done)
+        return error_set(out_error, "scene \"%s\" does not fit into GPU memory after an edit",
+                         resident->scene->name);
+    *seen = *now;
+    return true;
+}
+
+void resident_count_materials(struct resident *resident)
+{
+    const struct scene *scene = resident->scene;
+    struct resident_counts *counts = &resident->counts;
+    counts->textured_materials = 0;
+    counts->masked_materials = 0;
+    counts->transparent_materials = 0;
+    counts->blinn_phong_materials = 0;
+    bool *counted = calloc(scene->material_count ? scene->material_count : 1, sizeof(bool));
+    if (!counted)
+        return;
+    for (uint32_t i = 0; i < counts->instances; i++) {
+        const struct resident_instance *instance = &resident->instances[i];
+        uint32_t id = scene->primitives[instance->primitive].material;
+        if (!instance->visible || counted[id])
+            continue;
+        counted[id] = true;
+        const struct scene_material *material = &scene->materials[id];
+        bool textured = false;
+        for (int slot = 0; slot < SCENE_TEXTURE_SLOT_COUNT; slot++)
+            textured = textured || material->textures[slot].image != SCENE_NONE;
+        counts->textured_materials += textured;
+        counts->masked_materials += material->alpha_mode == SCENE_ALPHA_MASK;
+        counts->transparent_materials +=
+            material->alpha_mode == SCENE_ALPHA_BLEND || material->transmission > 0.0f;
+        counts->blinn_phong_materials += material->shading == SCENE_SHADING_BLINN_PHONG;
+    }
+    free(counted);
+}
+
+void resident_bind(const struct resident *resident)
+{
+    struct gpu *gpu = resident->gpu;
+    gpu_bind_storage(gpu, BIND_INSTANCES, resident->instance_blocks);
+    gpu_bind_storage(gpu, BIND_ID_BLOCKS, resident->id_blocks);
+    gpu_bind_storage(gpu, BIND_VERTICES, resident->vertices);
+    gpu_bind_storage(gpu, BIND_INDICES, resident->indices);
+    gpu_bind_storage(gpu, BIND_MATERIALS, resident->materials);
+    gpu_bind_storage(gpu, BIND_TEXTURES, resident->texture_blocks);
+    gpu_bind_storage(gpu, BIND_LIGHTS, resident->lights);
+    gpu_bind_storage(gpu, BIND_AREA_LIGHTS, resident->area_lights);
+    gpu_bind_storage(gpu, BIND_ENVIRONMENT, resident->environment);
+    gpu_bind_texture(gpu, UNIT_SHADOW_MAP, resident->shadow_map);
+    gpu_bind_texture(gpu, UNIT_ENVIRONMENT, resident->environment_levels);
+    gpu_bind_texture(gpu, UNIT_BACKGROUND, resident->environment_background);
+    for (uint32_t i = 0; i < resident->texture_class_count; i++)
+        gpu_bind_texture(gpu, UNIT_MATERIAL_CLASSES + i, resident->texture_classes[i]);
+}

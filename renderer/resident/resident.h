@@ -1,0 +1,114 @@
+// A scene as the GPU holds it: buffers, texture arrays, light tables and shadow maps. Kept in step
+// with the scene document by its revisions. Render thread only.
+#ifndef VOXCAST_RENDERER_RESIDENT_RESIDENT_H
+#define VOXCAST_RENDERER_RESIDENT_RESIDENT_H
+
+#include "renderer/gpu/buffer.h"
+#include "renderer/gpu/gpu.h"
+#include "renderer/gpu/texture.h"
+#include "shared/bindings.h"
+#include "shared/blocks.h"
+
+#define SHADOW_MAP_EDGE 2048u
+
+// Draws are sorted into groups of one kind and one face culling.
+enum draw_kind { DRAW_OPAQUE, DRAW_MASKED, DRAW_TRANSPARENT, DRAW_KIND_COUNT };
+#define DRAW_CULL_COUNT  3 // enum gpu_cull
+#define DRAW_GROUP_COUNT (DRAW_KIND_COUNT * DRAW_CULL_COUNT)
+
+struct resident_instance {
+    uint32_t node;
+    uint32_t primitive;
+    uint32_t index_first;
+    uint32_t index_count;
+    uint8_t group; // kind * DRAW_CULL_COUNT + cull
+    bool visible;
+    float bounds_min[3]; // world
+    float bounds_max[3];
+};
+
+struct resident_counts {
+    uint32_t instances;
+    uint32_t lights; // enabled punctual lights
+    uint32_t ranged_lights;
+    uint32_t area_lights;
+    uint32_t shadow_layers;
+    uint32_t textured_materials; // in use by a visible instance; likewise below
+    uint32_t masked_materials;
+    uint32_t transparent_materials;
+    uint32_t blinn_phong_materials;
+};
+
+struct resident {
+    struct gpu *gpu;
+    const struct scene *scene;
+    struct scene_revisions seen;
+    struct resident_counts counts;
+
+    struct gpu_buffer *vertices;
+    struct gpu_buffer *indices;
+    struct gpu_buffer *instance_ids; // 0, 1, 2 ...
+    struct gpu_buffer *instance_blocks;
+    struct gpu_buffer *id_blocks;
+    struct gpu_geometry *geometry;
+    struct resident_instance *instances;
+    bool drawable; // any triangle at all
+    float bounds_min[3];
+    float bounds_max[3];
+    float diagonal_m; // of the bounds; 1 where there is no geometry
+
+    struct gpu_buffer *materials;
+    struct gpu_buffer *texture_blocks;
+    uint32_t texture_class_count;
+    struct gpu_texture *texture_classes[MAX_TEXTURE_CLASSES];
+    struct image_place {
+        uint32_t class_number;
+        uint32_t layer;
+        float mean[4];              // linear mean colour
+    } * color_places, *data_places; // by image id: as sRGB colour and as linear data
+
+    struct gpu_buffer *lights;
+    struct gpu_buffer *area_lights;
+    uint32_t directional_light; // index in `lights` of the one with view cascades, or NO_SHADOW
+    float directional_axis[3];
+    struct gpu_texture *shadow_map;
+    struct gpu_framebuffer *shadow_framebuffers[MAX_SHADOW_LAYERS];
+    struct shadow_view_block shadow_views[MAX_SHADOW_LAYERS];
+    bool shadow_stale[MAX_SHADOW_LAYERS];
+    uint64_t shadow_revision; // counts changes of any shadow caster or light
+
+    struct gpu_buffer *environment;
+    struct gpu_texture *environment_levels;
+    struct gpu_texture *environment_background;
+};
+
+// Uploads everything; NULL with a message when memory ends. `scene` must outlive the result.
+struct resident *resident_create(struct gpu *gpu, const struct scene *scene,
+                                 struct error *out_error);
+void resident_destroy(struct resident **resident);
+
+// Uploads what the scene's revisions say has changed. False with a message when memory ends.
+bool resident_update(struct resident *resident, struct error *out_error);
+
+// Parts of the above, one file each.
+bool resident_upload_geometry(struct resident *resident);
+bool resident_upload_instances(struct resident *resident);
+bool resident_upload_textures(struct resident *resident);
+bool resident_upload_materials(struct resident *resident);
+bool resident_upload_lights(struct resident *resident);
+bool resident_upload_environment(struct resident *resident);
+void resident_count_materials(struct resident *resident);
+
+// Binds all buffers and textures of the scene to their slots.
+void resident_bind(const struct resident *resident);
+
+// The orthographic view of a box along `axis` (unit, the way that light travels), with a reach of
+// `near_reach_m` towards the light beyond the box for casters outside it.
+void resident_directional_view(const float axis[3], const float box_min[3], const float box_max[3],
+                               float near_reach_m, struct shadow_view_block *out_view);
+
+// Finds the planar emitters among the visible instances. Returns their number.
+uint32_t resident_find_area_lights(const struct resident *resident,
+                                   struct area_light_block out_lights[MAX_AREA_LIGHTS]);
+
+#endif

@@ -1,0 +1,300 @@
+#include "renderer/scene/ray_scene.h"
+
+#include <embree3/rtcore.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/scene/texture_sample.h"
+#include "renderer/scene/vector3.h"
+
+// Embree's own range ends at about 1.8e18; instances that reach beyond this are left out.
+#define RAY_SCENE_MAX_EXTENT 1e17
+
+// What the intersection filter of one primitive's geometry needs.
+struct filter_data {
+    const struct scene *scene;
+    uint32_t primitive;
+};
+
+struct ray_scene {
+    const struct scene *scene;
+    RTCDevice device;
+    RTCScene top;
+    RTCScene *meshes; // by mesh; NULL where no node uses it
+    uint32_t mesh_count;
+    struct filter_data *filters; // by primitive
+    uint32_t *instance_nodes;    // node by instance, which is the geometry's id in `top`
+    float *instance_extents;     // largest coordinate of the instance's mesh
+    uint32_t instance_count;
+};
+
+static float alpha_at(const struct scene *scene, uint32_t primitive, uint32_t triangle, float u,
+                      float v)
+{
+    const struct scene_primitive *source = &scene->primitives[primitive];
+    const struct scene_material *material = &scene->materials[source->material];
+    const struct scene_texture *base_color = &material->textures[SCENE_TEXTURE_BASE_COLOR];
+    const uint32_t *indices = scene->indices + source->index_first + (size_t)triangle * 3;
+    const float weights[3] = {1.0f - u - v, u, v};
+    float uv[2] = {0};
+    float alpha = 0;
+    for (int corner = 0; corner < 3; corner++) {
+        const struct scene_vertex *vertex = &scene->vertices[indices[corner]];
+        uv[0] += weights[corner] * vertex->uv[base_color->uv_set][0];
+        uv[1] += weights[corner] * vertex->uv[base_color->uv_set][1];
+        alpha += weights[corner] * vertex->color[3];
+    }
+    float texel[4];
+    texture_sample(scene, base_color, uv, texel);
+    return alpha * texel[3] * material->base_color[3];
+}
+
+// Refuses hits in the holes of alpha-masked materials, as the materials are now.
+static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
+{
+    const struct filter_data *data = arguments->geometryUserPtr;
+    const struct scene *scene = data->scene;
+    const struct scene_material *material =
+        &scene->materials[scene->primitives[data->primitive].material];
+    if (material->alpha_mode != SCENE_ALPHA_MASK) {
+        return;
+    }
+    // Rays are cast one at a time, so that there is one hit here.
+    const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
+    if (alpha_at(scene, data->primitive, hit->primID, hit->u, hit->v) < material->alpha_cutoff) {
+        arguments->valid[0] = 0;
+    }
+}
+
+static void attach_primitive(struct ray_scene *ray_scene, RTCScene mesh, uint32_t primitive,
+                             uint32_t id)
+{
+    const struct scene *scene = ray_scene->scene;
+    const struct scene_primitive *source = &scene->primitives[primitive];
+    RTCGeometry geometry = rtcNewGeometry(ray_scene->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               scene->vertices, 0, sizeof(*scene->vertices), scene->vertex_count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices,
+                               source->index_first * sizeof(uint32_t), 3 * sizeof(uint32_t),
+                               source->index_count / 3);
+    ray_scene->filters[primitive] = (struct filter_data){scene, primitive};
+    rtcSetGeometryUserData(geometry, &ray_scene->filters[primitive]);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter_hit);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(mesh, geometry, id);
+    rtcReleaseGeometry(geometry);
+}
+
+static RTCScene build_mesh(struct ray_scene *ray_scene, uint32_t mesh)
+{
+    const struct scene_mesh *source = &ray_scene->scene->meshes[mesh];
+    RTCScene built = rtcNewScene(ray_scene->device);
+    rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
+    for (uint32_t i = 0; i < source->primitive_count; i++) {
+        attach_primitive(ray_scene, built, source->primitive_first + i, i);
+    }
+    rtcCommitScene(built);
+    return built;
+}
+
+static float mesh_extent(const struct scene *scene, uint32_t mesh)
+{
+    const struct scene_mesh *source = &scene->meshes[mesh];
+    float extent = 0;
+    for (uint32_t i = 0; i < source->primitive_count; i++) {
+        const struct scene_primitive *primitive = &scene->primitives[source->primitive_first + i];
+        for (int axis = 0; axis < 3; axis++) {
+            extent = fmaxf(extent, fmaxf(fabsf(primitive->bounds_min[axis]),
+                                         fabsf(primitive->bounds_max[axis])));
+        }
+    }
+    return extent;
+}
+
+static void add_instances(struct ray_scene *ray_scene)
+{
+    const struct scene *scene = ray_scene->scene;
+    for (uint32_t node = 0; node < scene->node_count; node++) {
+        uint32_t mesh = scene->nodes[node].mesh;
+        if (mesh == SCENE_NONE) {
+            continue;
+        }
+        if (!ray_scene->meshes[mesh]) {
+            ray_scene->meshes[mesh] = build_mesh(ray_scene, mesh);
+        }
+        uint32_t id = ray_scene->instance_count++;
+        RTCGeometry instance = rtcNewGeometry(ray_scene->device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(instance, ray_scene->meshes[mesh]);
+        rtcAttachGeometryByID(ray_scene->top, instance, id);
+        rtcReleaseGeometry(instance);
+        ray_scene->instance_nodes[id] = node;
+        ray_scene->instance_extents[id] = mesh_extent(scene, mesh);
+    }
+}
+
+struct ray_scene *ray_scene_create(const struct scene *scene)
+{
+    struct ray_scene *ray_scene = calloc(1, sizeof(*ray_scene));
+    if (!ray_scene) {
+        return NULL;
+    }
+    ray_scene->scene = scene;
+    ray_scene->mesh_count = scene->mesh_count;
+    ray_scene->device = rtcNewDevice(NULL);
+    ray_scene->meshes = calloc(scene->mesh_count + 1, sizeof(*ray_scene->meshes));
+    ray_scene->filters = calloc(scene->primitive_count + 1, sizeof(*ray_scene->filters));
+    ray_scene->instance_nodes = calloc(scene->node_count + 1, sizeof(uint32_t));
+    ray_scene->instance_extents = calloc(scene->node_count + 1, sizeof(float));
+    if (!ray_scene->device || !ray_scene->meshes || !ray_scene->filters ||
+        !ray_scene->instance_nodes || !ray_scene->instance_extents) {
+        ray_scene_destroy(&ray_scene);
+        return NULL;
+    }
+    ray_scene->top = rtcNewScene(ray_scene->device);
+    rtcSetSceneFlags(ray_scene->top, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
+    add_instances(ray_scene);
+    ray_scene_update_transforms(ray_scene);
+    if (rtcGetDeviceError(ray_scene->device) != RTC_ERROR_NONE) {
+        ray_scene_destroy(&ray_scene);
+    }
+    return ray_scene;
+}
+
+void ray_scene_destroy(struct ray_scene **ray_scene_slot)
+{
+    struct ray_scene *ray_scene = *ray_scene_slot;
+    *ray_scene_slot = NULL;
+    if (!ray_scene) {
+        return;
+    }
+    if (ray_scene->top) {
+        rtcReleaseScene(ray_scene->top);
+    }
+    for (uint32_t i = 0; ray_scene->meshes && i < ray_scene->mesh_count; i++) {
+        if (ray_scene->meshes[i]) {
+            rtcReleaseScene(ray_scene->meshes[i]);
+        }
+    }
+    if (ray_scene->device) {
+        rtcReleaseDevice(ray_scene->device);
+    }
+    free(ray_scene->meshes);
+    free(ray_scene->filters);
+    free(ray_scene->instance_nodes);
+    free(ray_scene->instance_extents);
+    free(ray_scene);
+}
+
+// Rows of the adjugate of the upper 3 x 3 part: the inverse but for the determinant, returned.
+static double adjugate(const float matrix[16], double out_rows[3][3])
+{
+    double columns[3][3];
+    for (int axis = 0; axis < 3; axis++) {
+        for (int i = 0; i < 3; i++) {
+            columns[axis][i] = matrix[axis * 4 + i];
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        vector3_cross(out_rows[axis], columns[(axis + 1) % 3], columns[(axis + 2) % 3]);
+    }
+    return vector3_dot(out_rows[0], columns[0]);
+}
+
+// Embree inverts the matrix: one that has no inverse, or reaches beyond its range, cannot be used.
+static bool is_usable_matrix(const float matrix[16], float extent)
+{
+    double rows[3][3];
+    double largest = 0;
+    for (int i = 0; i < 16; i++) {
+        if (!isfinite(matrix[i])) {
+            return false;
+        }
+        largest = fmax(largest, fabs((double)matrix[i]) * (i < 12 ? extent : 1.0));
+    }
+    return largest < RAY_SCENE_MAX_EXTENT && fabs(adjugate(matrix, rows)) > 1e-30;
+}
+
+void ray_scene_update_transforms(struct ray_scene *ray_scene)
+{
+    for (uint32_t i = 0; i < ray_scene->instance_count; i++) {
+        const struct scene_node *node = &ray_scene->scene->nodes[ray_scene->instance_nodes[i]];
+        RTCGeometry instance = rtcGetGeometry(ray_scene->top, i);
+        if (node->world_visible && !node->removed &&
+            is_usable_matrix(node->world_from_local, ray_scene->instance_extents[i])) {
+            rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
+                                    node->world_from_local);
+            rtcEnableGeometry(instance);
+        } else {
+            rtcDisableGeometry(instance);
+        }
+        rtcCommitGeometry(instance);
+    }
+    rtcCommitScene(ray_scene->top);
+}
+
+// The geometric normal in world space, unit length, on the side the ray comes from.
+static void fill_normal(const struct scene_node *node, const struct RTCHit *hit,
+                        const float direction[3], float out_normal[3])
+{
+    double rows[3][3];
+    double normal[3] = {0};
+    // Normals transform by the inverse transposed; the determinant's sign is settled below.
+    adjugate(node->world_from_local, rows);
+    const double local[3] = {hit->Ng_x, hit->Ng_y, hit->Ng_z};
+    for (int axis = 0; axis < 3; axis++) {
+        for (int i = 0; i < 3; i++) {
+            normal[i] += rows[axis][i] * local[axis];
+        }
+    }
+    double length = vector3_length(normal);
+    double facing = normal[0] * direction[0] + normal[1] * direction[1] + normal[2] * direction[2];
+    for (int axis = 0; axis < 3; axis++) {
+        out_normal[axis] = length > 0 ? (float)(normal[axis] / (facing > 0 ? -length : length)) : 0;
+    }
+}
+
+bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3],
+                         const float direction[3], float max_distance, struct ray_hit *out_hit)
+{
+    bool finite = isfinite(max_distance) && max_distance > 0;
+    for (int axis = 0; axis < 3; axis++) {
+        finite = finite && isfinite(origin[axis]) && isfinite(direction[axis]);
+    }
+    if (!finite || (direction[0] == 0 && direction[1] == 0 && direction[2] == 0)) {
+        return false;
+    }
+    struct RTCRayHit query = {
+        .ray = {.org_x = origin[0],
+                .org_y = origin[1],
+                .org_z = origin[2],
+                .dir_x = direction[0],
+                .dir_y = direction[1],
+                .dir_z = direction[2],
+                .tnear = 0,
+                .tfar = max_distance,
+                .mask = UINT32_MAX},
+        .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}},
+    };
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(ray_scene->top, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        return false;
+    }
+    const struct scene *scene = ray_scene->scene;
+    uint32_t node_index = ray_scene->instance_nodes[query.hit.instID[0]];
+    const struct scene_node *node = &scene->nodes[node_index];
+    out_hit->node = node_index;
+    out_hit->primitive = scene->meshes[node->mesh].primitive_first + query.hit.geomID;
+    out_hit->triangle = query.hit.primID;
+    out_hit->material = scene->primitives[out_hit->primitive].material;
+    out_hit->barycentric[0] = query.hit.u;
+    out_hit->barycentric[1] = query.hit.v;
+    out_hit->distance = query.ray.tfar;
+    for (int axis = 0; axis < 3; axis++) {
+        out_hit->position[axis] = origin[axis] + direction[axis] * query.ray.tfar;
+    }
+    fill_normal(node, &query.hit, direction, out_hit->normal);
+    return true;
+}

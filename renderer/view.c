@@ -1,0 +1,200 @@
+#include "renderer/view.h"
+
+#include <stdlib.h>
+
+struct view *view_create(struct gpu *gpu)
+{
+    struct view *view = calloc(1, sizeof(*view));
+    if (!view)
+        return NULL;
+    view->gpu = gpu;
+    view->timer = gpu_timer_create(gpu);
+    view->frame_block =
+        gpu_buffer_create(gpu, "view.frame", GPU_BUFFER_STATIC, sizeof(struct frame_block), NULL);
+    view->exposure = gpu_buffer_create(gpu, "view.exposure", GPU_BUFFER_STATIC,
+                                       sizeof(vec4) + HISTOGRAM_BINS * sizeof(uint32_t), NULL);
+    view->shadow_views = gpu_buffer_create(
+        gpu, "view.shadow_views", GPU_BUFFER_STATIC,
+        (MAX_SHADOW_LAYERS + MAX_VIEW_SHADOW_LAYERS) * sizeof(struct shadow_view_block), NULL);
+    if (!view->timer || !view->frame_block || !view->exposure || !view->shadow_views)
+        view_destroy(&view);
+    return view;
+}
+
+static void destroy_sized_targets(struct view *view)
+{
+    gpu_framebuffer_destroy(&view->framebuffer);
+    gpu_framebuffer_destroy(&view->list_framebuffer);
+    gpu_texture_destroy(&view->ids);
+    gpu_texture_destroy(&view->depth);
+    gpu_buffer_destroy(&view->gbuffer);
+    gpu_buffer_destroy(&view->radiance);
+    gpu_buffer_destroy(&view->light_masks);
+    gpu_buffer_destroy(&view->fragments);
+    view->width = 0;
+    view->height = 0;
+}
+
+static void destroy_cascades(struct view *view)
+{
+    for (uint32_t i = 0; i < MAX_VIEW_SHADOW_LAYERS; i++)
+        gpu_framebuffer_destroy(&view->cascade_framebuffers[i]);
+    gpu_texture_destroy(&view->cascade_map);
+    view->cascade_count = 0;
+}
+
+void view_destroy(struct view **view_slot)
+{
+    struct view *view = *view_slot;
+    *view_slot = NULL;
+    if (!view)
+        return;
+    destroy_sized_targets(view);
+    destroy_cascades(view);
+    draw_list_finish(&view->draws);
+    draw_list_finish(&view->shadow_draws);
+    gpu_buffer_destroy(&view->frame_block);
+    gpu_buffer_destroy(&view->exposure);
+    gpu_buffer_destroy(&view->output);
+    gpu_buffer_destroy(&view->shadow_views);
+    for (uint32_t i = 0; i < RENDERER_FRAMES_IN_RING; i++) {
+        gpu_fence_destroy(&view->ring[i].fence);
+        gpu_buffer_destroy(&view->ring[i].pixels);
+    }
+    gpu_timer_destroy(&view->timer);
+    free(view);
+}
+
+size_t view_output_layout(const struct frame_params *params, size_t out_offsets[3],
+                          uint32_t out_pitches[3])
+{
+    uint32_t width = params->width, height = params->height;
+    for (int i = 0; i < 3; i++) {
+        out_offsets[i] = 0;
+        out_pitches[i] = 0;
+    }
+    if (params->output != FRAME_OUTPUT_YCBCR) {
+        out_pitches[0] = width * (params->output == FRAME_OUTPUT_RGBA8 ? 4 : 16);
+        return (size_t)out_pitches[0] * height;
+    }
+    // Blocks of 8 x 2 pixels write whole words, so rows are padded to 8 and to 2.
+    uint32_t rows = (height + 1) & ~1u;
+    out_pitches[0] = (width + 7) & ~7u;
+    out_pitches[1] = out_pitches[2] = out_pitches[0] / 2;
+    out_offsets[1] = (size_t)out_pitches[0] * rows;
+    out_offsets[2] = out_offsets[1] + (size_t)out_pitches[1] * (rows / 2);
+    return out_offsets[2] + (size_t)out_pitches[2] * (rows / 2);
+}
+
+static bool create_sized_targets(struct view *view, uint32_t width, uint32_t height)
+{
+    struct gpu_texture_params texture = {
+        .label = "view.targets", .width = width, .height = height, .filter = GPU_FILTER_NEAREST};
+    texture.format = GPU_FORMAT_R32UI;
+    view->ids = gpu_texture_create(view->gpu, &texture);
+    texture.format = GPU_FORMAT_DEPTH32F;
+    view->depth = gpu_texture_create(view->gpu, &texture);
+    if (!view->ids || !view->depth)
+        return false;
+    view->framebuffer = gpu_framebuffer_create(view->gpu, "visibility", view->ids, view->depth, 0);
+    view->list_framebuffer =
+        gpu_framebuffer_create(view->gpu, "transparent lists", NULL, view->depth, 0);
+    size_t pixels = (size_t)width * height;
+    view->gbuffer =
+        gpu_buffer_create(view->gpu, "view.gbuffer", GPU_BUFFER_STATIC, pixels * 32, NULL);
+    view->radiance =
+        gpu_buffer_create(view->gpu, "view.radiance", GPU_BUFFER_STATIC, pixels * 16, NULL);
+    view->width = width;
+    view->height = height;
+    return view->framebuffer && view->list_framebuffer && view->gbuffer && view->radiance;
+}
+
+static bool prepare_cascades(struct view *view, uint32_t wanted)
+{
+    if (view->cascade_count == wanted)
+        return true;
+    destroy_cascades(view);
+    if (wanted == 0)
+        return true;
+    view->cascade_map = gpu_texture_create(view->gpu, &(struct gpu_texture_params){
+                                                          .label = "shadow_map.cascades",
+                                                          .format = GPU_FORMAT_DEPTH32F,
+                                                          .width = SHADOW_MAP_EDGE,
+                                                          .height = SHADOW_MAP_EDGE,
+                                                          .layers = wanted,
+                                                          .filter = GPU_FILTER_SHADOW_COMPARE,
+                                                      });
+    if (!view->cascade_map)
+        return false;
+    view->cascade_count = wanted;
+    for (uint32_t i = 0; i < wanted; i++) {
+        view->cascade_stale[i] = true;
+        view->cascade_framebuffers[i] =
+            gpu_framebuffer_create(view->gpu, "shadow_map.cascades", NULL, view->cascade_map, i);
+        if (!view->cascade_framebuffers[i])
+            return false;
+    }
+    return true;
+}
+
+bool view_prepare(struct view *view, const struct resident *resident,
+                  const struct frame_params *params, uint32_t effect_bits)
+{
+    const struct quality_level *quality = &quality_levels[params->quality];
+    uint32_t width = (uint32_t)((float)params->width * quality->resolution_scale);
+    uint32_t height = (uint32_t)((float)params->height * quality->resolution_scale);
+    width = width ? width : 1;
+    height = height ? height : 1;
+    if (width != view->width || height != view->height) {
+        destroy_sized_targets(view);
+        if (!create_sized_targets(view, width, height))
+            return false;
+    }
+    view->shown_width = params->width;
+    view->shown_height = params->height;
+    struct gpu *gpu = view->gpu;
+    size_t offsets[3];
+    uint32_t pitches[3];
+    size_t output_bytes = view_output_layout(params, offsets, pitches);
+    bool done =
+        gpu_buffer_ensure(gpu, &view->output, "view.output", GPU_BUFFER_STATIC, output_bytes) &&
+        gpu_buffer_ensure(gpu, &view->ring[view->ring_next].pixels, "readback", GPU_BUFFER_READBACK,
+                          output_bytes) &&
+        draw_list_reserve(&view->draws, gpu, resident->counts.instances) &&
+        draw_list_reserve(&view->shadow_draws, gpu, resident->counts.instances);
+    if (effect_bits & EFFECT_BIT(EFFECT_LIGHT_TILES)) {
+        size_t tiles = (size_t)((width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE) *
+                       ((height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE);
+        size_t words = (resident->counts.lights + 31) / 32;
+        done = done && gpu_buffer_ensure(gpu, &view->light_masks, "view.light_masks",
+                                         GPU_BUFFER_STATIC, tiles * words * 4);
+    } else {
+        gpu_buffer_destroy(&view->light_masks);
+    }
+    if (effect_bits & EFFECT_BIT(EFFECT_TRANSPARENCY)) {
+        size_t pixels = (size_t)width * height;
+        done = done && gpu_buffer_ensure(gpu, &view->fragments, "view.fragments", GPU_BUFFER_STATIC,
+                                         16 + pixels * 4 + pixels * BLENDED_PER_PIXEL * 8);
+    } else {
+        gpu_buffer_destroy(&view->fragments);
+    }
+    bool cascades =
+        (effect_bits & EFFECT_BIT(EFFECT_SHADOWS)) && resident->directional_light != NO_SHADOW;
+    return done && prepare_cascades(view, cascades ? quality->shadow_cascades : 0);
+}
+
+void view_bind(const struct view *view)
+{
+    struct gpu *gpu = view->gpu;
+    gpu_bind_uniforms(gpu, BIND_FRAME, view->frame_block);
+    gpu_bind_storage(gpu, BIND_SHADOW_VIEWS, view->shadow_views);
+    gpu_bind_storage(gpu, BIND_GBUFFER, view->gbuffer);
+    gpu_bind_storage(gpu, BIND_RADIANCE, view->radiance);
+    gpu_bind_storage(gpu, BIND_LIGHT_MASKS, view->light_masks);
+    gpu_bind_storage(gpu, BIND_OUTPUT, view->output);
+    gpu_bind_storage(gpu, BIND_EXPOSURE, view->exposure);
+    gpu_bind_storage(gpu, BIND_FRAGMENTS, view->fragments);
+    gpu_bind_texture(gpu, UNIT_IDS, view->ids);
+    gpu_bind_texture(gpu, UNIT_DEPTH, view->depth);
+    gpu_bind_texture(gpu, UNIT_VIEW_SHADOW_MAP, view->cascade_map);
+}

@@ -1,0 +1,81 @@
+// One camera's targets on the GPU and the ring of frames on their way to host memory.
+#ifndef VOXCAST_RENDERER_VIEW_H
+#define VOXCAST_RENDERER_VIEW_H
+
+#include "renderer/draw_list.h"
+#include "renderer/effects.h"
+#include "renderer/gpu/buffer.h"
+#include "renderer/gpu/texture.h"
+#include "renderer/gpu/timer.h"
+#include "renderer/resident/resident.h"
+
+struct ring_frame {
+    struct gpu_buffer *pixels;
+    struct gpu_fence *fence;
+    struct frame_pixels result; // planes filled in at collection
+    double started_ms;
+    bool pending;
+};
+
+struct view {
+    struct gpu *gpu;
+    struct gpu_timer *timer;
+    uint32_t width; // rendered; 0 before the first frame
+    uint32_t height;
+    uint32_t shown_width;
+    uint32_t shown_height;
+
+    struct gpu_buffer *frame_block;
+    struct gpu_texture *ids;
+    struct gpu_texture *depth;
+    struct gpu_framebuffer *framebuffer;      // ids and depth
+    struct gpu_framebuffer *list_framebuffer; // depth alone, for transparent lists
+    struct gpu_buffer *gbuffer;
+    struct gpu_buffer *radiance;
+    struct gpu_buffer *light_masks;
+    struct gpu_buffer *fragments;
+    struct gpu_buffer *exposure;
+    struct gpu_buffer *output;
+    struct draw_list draws;
+    struct draw_list shadow_draws;
+
+    struct gpu_buffer *shadow_views; // the scene's and then this view's cascades
+    uint64_t shadow_revision_seen;
+    uint32_t cascade_count;
+    float cascade_center[MAX_VIEW_SHADOW_LAYERS][3];
+    bool cascade_stale[MAX_VIEW_SHADOW_LAYERS];
+    struct shadow_view_block cascades[MAX_VIEW_SHADOW_LAYERS];
+    struct gpu_texture *cascade_map;
+    struct gpu_framebuffer *cascade_framebuffers[MAX_VIEW_SHADOW_LAYERS];
+
+    struct ring_frame ring[RENDERER_FRAMES_IN_RING];
+    uint32_t ring_next;   // where the next frame goes
+    uint32_t ring_oldest; // the next to collect
+    uint32_t ring_count;
+    bool collected; // the oldest is with the caller
+
+    // What the newest drawn frame was made from.
+    bool drawn;
+    struct frame_params last_params;
+    struct scene_revisions last_revisions;
+    uint64_t last_scene;
+    struct effect_plan last_plan;
+    const char *pass_skip_reasons[RENDERER_MAX_PASSES];
+    double last_frame_ms;
+    float last_exposure;
+};
+
+struct view *view_create(struct gpu *gpu);
+void view_destroy(struct view **view);
+
+// Makes the targets fit the sizes and effects. False when GPU memory ends.
+bool view_prepare(struct view *view, const struct resident *resident,
+                  const struct frame_params *params, uint32_t effect_bits);
+
+// Bytes of one output picture, and where its planes lie.
+size_t view_output_layout(const struct frame_params *params, size_t out_offsets[3],
+                          uint32_t out_pitches[3]);
+
+void view_bind(const struct view *view);
+
+#endif

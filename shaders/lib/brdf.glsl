@@ -1,0 +1,80 @@
+// Reflection models. Cook-Torrance with GGX as glTF 2.0, appendix B: Trowbridge-Reitz
+// distribution, height-correlated Smith visibility (Heitz 2014), Schlick Fresnel. Blinn-Phong
+// normalised by (n + 8) / 8 pi (Akenine-Moeller et al., Real-Time Rendering).
+#include "lib/surface.glsl"
+
+// Below this the highlight of a point light is narrower than any pixel; it keeps D finite.
+const float MIN_ALPHA = 1e-3;
+
+float alpha_of(surface s)
+{
+    return max(s.roughness * s.roughness, MIN_ALPHA);
+}
+
+float distribution_ggx(float n_h, float alpha)
+{
+    float a2 = alpha * alpha;
+    float d = n_h * n_h * (a2 - 1.0) + 1.0;
+    return a2 / (PI * d * d);
+}
+
+float visibility_smith(float n_l, float n_v, float alpha)
+{
+    float a2 = alpha * alpha;
+    float l = n_v * sqrt(n_l * n_l * (1.0 - a2) + a2);
+    float v = n_l * sqrt(n_v * n_v * (1.0 - a2) + a2);
+    return 0.5 / max(l + v, 1e-7);
+}
+
+vec3 fresnel_schlick(vec3 f0, vec3 f90, float v_h)
+{
+    float m = clamp(1.0 - v_h, 0.0, 1.0);
+    float m2 = m * m;
+    return f0 + (f90 - f0) * (m2 * m2 * m);
+}
+
+// Share of light that the dielectric layer lets through to the diffuse base.
+vec3 diffuse_reflectance(surface s, float v_h)
+{
+    vec3 reflected = fresnel_schlick(s.f0, vec3(s.f90), v_h);
+    float kept = 1.0 - max(reflected.r, max(reflected.g, reflected.b));
+    return s.base_color * ((1.0 - s.metallic) * kept);
+}
+
+vec3 specular_fresnel(surface s, float v_h)
+{
+    return mix(fresnel_schlick(s.f0, vec3(s.f90), v_h),
+               fresnel_schlick(s.base_color, vec3(1.0), v_h), s.metallic);
+}
+
+// Specular BRDF times the cosine for light from direction `l` (unit, towards the light).
+vec3 specular_brdf_cosine(surface s, vec3 l, float alpha)
+{
+    vec3 h = safe_normalize(l + s.view, s.normal);
+    float n_l = dot(s.normal, l);
+    float n_v = max(dot(s.normal, s.view), 1e-4);
+    float n_h = clamp(dot(s.normal, h), 0.0, 1.0);
+    float v_h = clamp(dot(s.view, h), 0.0, 1.0);
+    if (n_l <= 0.0)
+        return vec3(0.0);
+#if BLINN_PHONG
+    if (s.shading == SHADE_BLINN_PHONG) {
+        float exponent = clamp(2.0 / (alpha * alpha) - 2.0, 1.0, 16384.0);
+        return specular_fresnel(s, v_h) *
+               ((exponent + 8.0) / (8.0 * PI) * pow(n_h, exponent) * n_l);
+    }
+#endif
+    return specular_fresnel(s, v_h) *
+           (distribution_ggx(n_h, alpha) * visibility_smith(n_l, n_v, alpha) * n_l);
+}
+
+// BRDF times the cosine, per steradian.
+vec3 brdf_cosine(surface s, vec3 l)
+{
+    float n_l = dot(s.normal, l);
+    if (n_l <= 0.0)
+        return vec3(0.0);
+    vec3 h = safe_normalize(l + s.view, s.normal);
+    float v_h = clamp(dot(s.view, h), 0.0, 1.0);
+    return diffuse_reflectance(s, v_h) * (n_l / PI) + specular_brdf_cosine(s, l, alpha_of(s));
+}

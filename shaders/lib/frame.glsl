@@ -1,0 +1,52 @@
+// The frame's uniforms and small functions that every pass may use.
+#include "shared/bindings.h"
+#include "shared/blocks.h"
+
+layout(std140, binding = BIND_FRAME) uniform frame_uniforms
+{
+    frame_block frame;
+};
+
+const float PI = 3.14159265358979;
+
+// Through the pixel's centre; its part along the camera's forward direction is 1.
+vec3 ray_direction(vec2 pixel)
+{
+    return frame.ray_corner.xyz + (pixel.x + 0.5) * frame.ray_dx.xyz +
+           (pixel.y + 0.5) * frame.ray_dy.xyz;
+}
+
+// Reversed, infinite Z: depth = near / distance along the forward direction.
+float view_distance(float depth)
+{
+    return frame.eye.w / depth;
+}
+
+float luminance(vec3 color)
+{
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+}
+
+vec3 safe_normalize(vec3 v, vec3 fallback)
+{
+    float squared = dot(v, v);
+    return squared > 1e-30 && !isinf(squared) ? v * inversesqrt(squared) : fallback;
+}
+
+// Octahedral unit vectors (Cigolle et al. 2014, "A Survey of Efficient Representations for
+// Independent Unit Vectors").
+vec2 octahedral_encode(vec3 n)
+{
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    if (n.z < 0.0)
+        p = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    return p;
+}
+
+vec3 octahedral_decode(vec2 p)
+{
+    vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+    if (n.z < 0.0)
+        n.xy = (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+    return normalize(n);
+}

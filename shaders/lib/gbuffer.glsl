@@ -1,0 +1,69 @@
+// The G-buffer: two uvec4 a pixel.
+//   0: base colour and metallic, specular weight; shading and geometric normal (octahedral)
+//   1: dielectric F0 and roughness; emission (fp16); occlusion; shading model
+#include "lib/surface.glsl"
+
+layout(std430, binding = BIND_GBUFFER) buffer gbuffer_storage
+{
+    uvec4 gbuffer[];
+};
+
+layout(binding = UNIT_DEPTH) uniform sampler2D depth_texture;
+
+uint pixel_index(uvec2 pixel)
+{
+    return pixel.y * frame.size.x + pixel.x;
+}
+
+void gbuffer_store(uvec2 pixel, surface s)
+{
+    uint at = 2u * pixel_index(pixel);
+    uint blue_and_weights = (packUnorm2x16(vec2(s.base_color.b, 0.0)) & 0xffffu) |
+                            (packUnorm4x8(vec4(s.metallic, s.f90, 0.0, 0.0)) << 16);
+    gbuffer[at] = uvec4(packUnorm2x16(s.base_color.rg), blue_and_weights,
+                        packSnorm2x16(octahedral_encode(s.normal)),
+                        packSnorm2x16(octahedral_encode(s.geometric_normal)));
+    vec3 emission = min(s.emission, 65504.0);
+    uint blue_and_flags = (packHalf2x16(vec2(emission.b, 0.0)) & 0xffffu) |
+                          (uint(s.occlusion * 255.0 + 0.5) << 16) | (s.shading << 24);
+    gbuffer[at + 1u] = uvec4(packUnorm2x16(s.f0.rg), packUnorm2x16(vec2(s.f0.b, s.roughness)),
+                             packHalf2x16(emission.rg), blue_and_flags);
+}
+
+void gbuffer_store_background(uvec2 pixel)
+{
+    uint at = 2u * pixel_index(pixel);
+    gbuffer[at] = uvec4(0u);
+    gbuffer[at + 1u] = uvec4(0u, 0u, 0u, SHADE_BACKGROUND << 24);
+}
+
+vec3 unpack_emission(uvec4 second)
+{
+    return vec3(unpackHalf2x16(second.z), unpackHalf2x16(second.w).x);
+}
+
+// Of a background pixel, only `shading`, `view` and `emission` (black) mean something.
+surface gbuffer_load(uvec2 pixel)
+{
+    uint at = 2u * pixel_index(pixel);
+    uvec4 first = gbuffer[at];
+    uvec4 second = gbuffer[at + 1u];
+    surface s;
+    vec3 direction = ray_direction(vec2(pixel));
+    float depth = texelFetch(depth_texture, ivec2(pixel), 0).r;
+    s.shading = second.w >> 24;
+    s.view = -normalize(direction);
+    s.position = frame.eye.xyz + direction * (depth > 0.0 ? view_distance(depth) : 1.0);
+    vec4 weights = unpackUnorm4x8(first.y >> 16);
+    s.base_color = vec3(unpackUnorm2x16(first.x), unpackUnorm2x16(first.y).x);
+    s.metallic = weights.x;
+    s.f90 = weights.y;
+    s.normal = octahedral_decode(unpackSnorm2x16(first.z));
+    s.geometric_normal = octahedral_decode(unpackSnorm2x16(first.w));
+    vec2 blue_and_roughness = unpackUnorm2x16(second.y);
+    s.f0 = vec3(unpackUnorm2x16(second.x), blue_and_roughness.x);
+    s.roughness = blue_and_roughness.y;
+    s.emission = unpack_emission(second);
+    s.occlusion = float((second.w >> 16) & 0xffu) / 255.0;
+    return s;
+}

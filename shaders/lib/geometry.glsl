@@ -1,0 +1,201 @@
+// From a visibility id to a surface: fetches the triangle, intersects the pixel's ray with it,
+// interpolates the attributes and evaluates the material. Texture gradients are ray differentials
+// (Igehy 1999, "Tracing Ray Differentials"), so they are exact for planar triangles.
+#include "lib/surface.glsl"
+#include "lib/material.glsl"
+
+layout(std430, binding = BIND_INSTANCES) readonly buffer instance_storage
+{
+    instance_block instances[];
+};
+
+layout(std430, binding = BIND_ID_BLOCKS) readonly buffer id_block_storage
+{
+    uint id_block_instances[];
+};
+
+layout(std430, binding = BIND_VERTICES) readonly buffer vertex_storage
+{
+    float vertices[];
+};
+
+layout(std430, binding = BIND_INDICES) readonly buffer index_storage
+{
+    uint indices[];
+};
+
+struct triangle {
+    uint instance;
+    uvec3 words;   // where each vertex starts in `vertices`
+    vec3 corner;   // first corner minus the eye
+    vec3 edges[2]; // from the first corner
+};
+
+vec2 fetch2(uint word)
+{
+    return vec2(vertices[word], vertices[word + 1u]);
+}
+
+vec3 fetch3(uint word)
+{
+    return vec3(vertices[word], vertices[word + 1u], vertices[word + 2u]);
+}
+
+vec4 fetch4(uint word)
+{
+    return vec4(fetch3(word), vertices[word + 3u]);
+}
+
+// `id` is a visibility id above 0.
+triangle fetch_triangle(uint id)
+{
+    triangle t;
+    t.instance = id_block_instances[(id - 1u) >> ID_BLOCK_BITS];
+    uint first = instances[t.instance].info.x + 3u * (id - 1u - instances[t.instance].info.z);
+    t.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
+    mat4 world_from_local = instances[t.instance].world_from_local;
+    mat3 linear = mat3(world_from_local);
+    vec3 origin = world_from_local[3].xyz - frame.eye.xyz;
+    vec3 local = fetch3(t.words.x);
+    t.corner = linear * local + origin;
+    t.edges[0] = linear * (fetch3(t.words.y) - local);
+    t.edges[1] = linear * (fetch3(t.words.z) - local);
+    return t;
+}
+
+// Where a ray from the eye meets the triangle's plane: weights of the three corners (Moller and
+// Trumbore 1997). Also right outside the triangle.
+vec3 plane_weights(triangle t, vec3 direction)
+{
+    vec3 p = cross(direction, t.edges[1]);
+    float determinant = dot(t.edges[0], p);
+    float inverse = abs(determinant) > 1e-30 ? 1.0 / determinant : 0.0;
+    float b = -dot(t.corner, p) * inverse;
+    float c = dot(direction, cross(-t.corner, t.edges[0])) * inverse;
+    return vec3(1.0 - b - c, b, c);
+}
+
+vec2 interpolate2(triangle t, uint word, vec3 w)
+{
+    return fetch2(t.words.x + word) * w.x + fetch2(t.words.y + word) * w.y +
+           fetch2(t.words.z + word) * w.z;
+}
+
+vec3 interpolate3(triangle t, uint word, vec3 w)
+{
+    return fetch3(t.words.x + word) * w.x + fetch3(t.words.y + word) * w.y +
+           fetch3(t.words.z + word) * w.z;
+}
+
+vec4 interpolate4(triangle t, uint word, vec3 w)
+{
+    return fetch4(t.words.x + word) * w.x + fetch4(t.words.y + word) * w.y +
+           fetch4(t.words.z + word) * w.z;
+}
+
+// What a transparent layer does to the light behind it.
+struct layer {
+    float alpha;        // coverage (alphaMode BLEND)
+    float transmission; // share of the diffuse part that passes through
+    float thickness_m;
+    vec3 attenuation_color;
+    float attenuation_distance_m;
+};
+
+#if TEXTURE_CLASSES > 0
+vec3 mapped_normal(triangle t, material_block material, texture_point point, vec3 weights,
+                   vec3 normal)
+{
+    if ((material.info.z & (1u << TEXTURE_NORMAL)) == 0u)
+        return normal;
+    vec3 tangent_space = sample_slot(material, TEXTURE_NORMAL, point).xyz * 2.0 - 1.0;
+    tangent_space.xy *= material.surface.z;
+    vec4 tangent_local = interpolate4(t, 6u, weights);
+    vec3 tangent = mat3(instances[t.instance].world_from_local) * tangent_local.xyz;
+    tangent = tangent - normal * dot(normal, tangent);
+    float squared = dot(tangent, tangent);
+    if (!(squared > 1e-20))
+        return normal;
+    tangent *= inversesqrt(squared);
+    float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
+    vec3 bitangent = cross(normal, tangent) * (tangent_local.w < 0.0 ? -mirrored : mirrored);
+    return safe_normalize(tangent * tangent_space.x + bitangent * tangent_space.y +
+                              normal * tangent_space.z,
+                          normal);
+}
+#endif
+
+// Evaluates what a ray through `pixel` sees of the triangle. Back faces are turned to the viewer.
+surface load_surface(uint id, vec2 pixel, out layer through)
+{
+    triangle t = fetch_triangle(id);
+    vec3 direction = ray_direction(pixel);
+    vec3 weights = plane_weights(t, direction);
+    material_block material = materials[instances[t.instance].info.y];
+
+    surface s;
+    s.view = -normalize(direction);
+    s.position = frame.eye.xyz + t.corner + weights.y * t.edges[0] + weights.z * t.edges[1];
+    vec3 face = cross(t.edges[0], t.edges[1]);
+    float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
+    s.geometric_normal = safe_normalize(face * mirrored, s.view);
+    vec3 local_normal = interpolate3(t, 3u, weights);
+    s.normal = safe_normalize(vec3(dot(instances[t.instance].normal_rows[0].xyz, local_normal),
+                                   dot(instances[t.instance].normal_rows[1].xyz, local_normal),
+                                   dot(instances[t.instance].normal_rows[2].xyz, local_normal)),
+                              s.geometric_normal);
+    vec4 base = material.base_color * interpolate4(t, 14u, weights);
+    float metallic = material.surface.x;
+    float roughness = material.surface.y;
+    float occlusion = 1.0;
+    float weight = material.dielectric.y;
+    vec3 specular_color = material.specular_color.rgb;
+    float transmission = material.dielectric.z;
+    s.emission = material.emission.rgb;
+#if TEXTURE_CLASSES > 0
+    if (material.info.z != 0u) {
+        texture_point point;
+        vec3 weights_dx = plane_weights(t, direction + frame.ray_dx.xyz);
+        vec3 weights_dy = plane_weights(t, direction + frame.ray_dy.xyz);
+        vec4 uv[3] = {fetch4(t.words.x + 10u), fetch4(t.words.y + 10u), fetch4(t.words.z + 10u)};
+        point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
+        point.dx = uv[0] * weights_dx.x + uv[1] * weights_dx.y + uv[2] * weights_dx.z - point.uv;
+        point.dy = uv[0] * weights_dy.x + uv[1] * weights_dy.y + uv[2] * weights_dy.z - point.uv;
+        s.normal = mapped_normal(t, material, point, weights, s.normal);
+        // One loop, so that the sampler code is compiled once.
+        vec4 texels[TEXTURE_SLOTS];
+        for (uint slot = 0u; slot < TEXTURE_SLOTS; slot++)
+            texels[slot] =
+                slot == TEXTURE_NORMAL ? vec4(1.0) : sample_slot(material, slot, point);
+        base *= texels[TEXTURE_BASE_COLOR];
+        roughness *= texels[TEXTURE_METALLIC_ROUGHNESS].g;
+        metallic *= texels[TEXTURE_METALLIC_ROUGHNESS].b;
+        occlusion = 1.0 + material.surface.w * (texels[TEXTURE_OCCLUSION].r - 1.0);
+        s.emission *= texels[TEXTURE_EMISSIVE].rgb;
+        transmission *= texels[TEXTURE_TRANSMISSION].r;
+        weight *= texels[TEXTURE_SPECULAR].a;
+        specular_color *= texels[TEXTURE_SPECULAR_COLOR].rgb;
+    }
+#endif
+    if (dot(s.geometric_normal, s.view) < 0.0) {
+        s.geometric_normal = -s.geometric_normal;
+        s.normal = -s.normal;
+    }
+    s.base_color = clamp(base.rgb, 0.0, 1.0);
+    s.metallic = clamp(metallic, 0.0, 1.0);
+    s.roughness = clamp(roughness, 0.0, 1.0);
+    s.occlusion = clamp(occlusion, 0.0, 1.0);
+    s.f0 = min(material.dielectric.x * specular_color, 1.0) * weight;
+    s.f90 = (material.info.x & MATERIAL_IOR_ONE) != 0u ? 0.0 : weight;
+    s.shading = material.info.x & MATERIAL_SHADING_MASK;
+    if (s.shading == SHADE_UNLIT)
+        s.emission = s.base_color;
+
+    bool blend = (material.info.x & MATERIAL_ALPHA_BLEND) != 0u;
+    through.alpha = blend ? clamp(base.a, 0.0, 1.0) : 1.0;
+    through.transmission = transmission * (1.0 - s.metallic);
+    through.thickness_m = material.dielectric.w;
+    through.attenuation_color = material.attenuation_color.rgb;
+    through.attenuation_distance_m = material.specular_color.w;
+    return s;
+}

@@ -1,0 +1,188 @@
+// Direct light on a surface from punctual lights (KHR_lights_punctual) and planar emitters.
+#include "lib/brdf.glsl"
+#if SHADOWS
+#include "lib/shadow.glsl"
+#endif
+
+layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
+{
+    light_block lights[];
+};
+
+layout(std430, binding = BIND_AREA_LIGHTS) readonly buffer area_light_storage
+{
+    area_light_block area_lights[];
+};
+
+#if LIGHT_TILES
+layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
+{
+    uint light_masks[]; // frame.lights.z words per tile, one bit per light
+};
+#endif
+
+// Nearer than this to a light (1 mm) the inverse square no longer grows.
+const float MIN_LIGHT_DISTANCE_SQUARED = 1e-6;
+
+float distance_attenuation(float squared, float range_m)
+{
+    float attenuation = 1.0 / max(squared, MIN_LIGHT_DISTANCE_SQUARED);
+    if (range_m > 0.0) {
+        float ratio = squared / (range_m * range_m);
+        attenuation *= clamp(1.0 - ratio * ratio, 0.0, 1.0);
+    }
+    return attenuation;
+}
+
+vec3 punctual_light(surface s, light_block light)
+{
+    vec3 l = -light.direction.xyz;
+    float strength = 1.0;
+    if (int(light.position.w) != LIGHT_DIRECTIONAL) {
+        vec3 to_light = light.position.xyz - s.position;
+        float squared = dot(to_light, to_light);
+        l = safe_normalize(to_light, s.normal);
+        strength = distance_attenuation(squared, light.direction.w);
+        if (int(light.position.w) == LIGHT_SPOT) {
+            float cosine = dot(light.direction.xyz, -l);
+            float angular = clamp(cosine * light.cone.x + light.cone.y, 0.0, 1.0);
+            strength *= angular * angular;
+        }
+    }
+    if (strength <= 0.0 || dot(s.normal, l) <= 0.0 || dot(s.geometric_normal, l) <= 0.0)
+        return vec3(0.0);
+    vec3 reflected = brdf_cosine(s, l) * light.radiance.rgb * strength;
+#if SHADOWS
+    if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0)
+        reflected *= shadow_visibility(light.shadow, light.position.xyz, s.position,
+                                       s.geometric_normal, l);
+#endif
+    return reflected;
+}
+
+#if AREA_LIGHTS
+// Integral of one edge of a polygon seen from the origin (Lambert 1760; Baum et al. 1989): the
+// angle it spans times the unit normal of its plane, component along n.
+float edge_integral(vec3 a, vec3 b, vec3 n)
+{
+    vec3 normal = cross(a, b);
+    float squared = dot(normal, normal);
+    if (squared < 1e-24)
+        return 0.0;
+    float cosine = clamp(dot(a, b), -1.0, 1.0);
+    return acos(cosine) * dot(normal, n) * inversesqrt(squared);
+}
+
+// Form factor of a quad for a receiver at the origin with unit normal n, clipped at its horizon:
+// irradiance = pi * radiance * form factor. Corners counter-clockwise seen from the lit side.
+float quad_form_factor(vec3 corners[4], vec3 n)
+{
+    float sum = 0.0;
+    vec3 first = vec3(0.0);
+    vec3 last = vec3(0.0);
+    bool started = false;
+    for (int i = 0; i < 4; i++) {
+        vec3 a = corners[i];
+        vec3 b = corners[(i + 1) & 3];
+        float height_a = dot(a, n);
+        float height_b = dot(b, n);
+        // The part of edge a-b above the horizon, preceded by the jump along the horizon.
+        if (height_a <= 0.0 && height_b <= 0.0)
+            continue;
+        float t = height_a / (height_a - height_b);
+        vec3 from = normalize(height_a < 0.0 ? mix(a, b, t) : a);
+        vec3 to = normalize(height_b < 0.0 ? mix(a, b, t) : b);
+        if (started)
+            sum += edge_integral(last, from, n);
+        else
+            first = from;
+        started = true;
+        sum += edge_integral(from, to, n);
+        last = to;
+    }
+    if (started)
+        sum += edge_integral(last, first, n);
+    return sum / (2.0 * PI);
+}
+
+// Specular light of a planar emitter by its point nearest to the mirror ray, with the lobe widened
+// by the emitter's extent (Karis 2013, "Real Shading in Unreal Engine 4").
+vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reversed)
+{
+    vec3 mirror = reflect(-s.view, s.normal);
+    vec3 center = light.center.xyz - s.position;
+    vec3 normal = reversed ? -light.normal.xyz : light.normal.xyz;
+    float slope = dot(mirror, normal);
+    vec3 target = center;
+    if (slope < -1e-4)
+        target = mirror * (dot(center, normal) / slope);
+    // Nearest point of the parallelogram spanned at the first corner.
+    vec3 u = corners[1] - corners[0];
+    vec3 v = corners[3] - corners[0];
+    vec3 d = target - corners[0];
+    float uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
+    float scale = 1.0 / max(uu * vv - uv * uv, 1e-30);
+    vec2 at = clamp(vec2(vv * dot(d, u) - uv * dot(d, v), uu * dot(d, v) - uv * dot(d, u)) * scale,
+                    0.0, 1.0);
+    vec3 nearest = corners[0] + u * at.x + v * at.y;
+    float squared = max(dot(nearest, nearest), MIN_LIGHT_DISTANCE_SQUARED);
+    vec3 l = nearest * inversesqrt(squared);
+    float cosine = max(-dot(l, normal), 0.0);
+    float alpha = alpha_of(s);
+    float solid_angle = min(light.radiance.w * cosine / squared, 2.0 * PI);
+    // A lobe narrower than the emitter sees radiance, not intensity: the widened lobe integrates
+    // to at most one over the emitter.
+    float widened = sqrt(alpha * alpha + solid_angle / (4.0 * PI));
+    return specular_brdf_cosine(s, l, min(widened, 1.0)) * light.radiance.rgb * solid_angle;
+}
+
+vec3 area_light(surface s, area_light_block light)
+{
+    float side = dot(light.normal.xyz, s.position - light.center.xyz);
+    bool reversed = side < 0.0;
+    if (reversed && light.corners[0].w == 0.0)
+        return vec3(0.0);
+    vec3 corners[4];
+    for (int i = 0; i < 4; i++)
+        corners[i] = light.corners[reversed ? 3 - i : i].xyz - s.position;
+    // A corner at the receiver has no direction; the emitter itself is not lit by itself.
+    if (abs(side) < 1e-6 * sqrt(light.radiance.w))
+        return vec3(0.0);
+    float form_factor = max(-quad_form_factor(corners, s.normal), 0.0);
+    vec3 to_light = safe_normalize(light.center.xyz - s.position, s.normal);
+    float v_h = clamp(dot(s.view, safe_normalize(to_light + s.view, s.normal)), 0.0, 1.0);
+    vec3 reflected = diffuse_reflectance(s, v_h) * light.radiance.rgb * form_factor +
+                     area_specular(s, light, corners, reversed);
+#if SHADOWS
+    if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0)
+        reflected *= shadow_visibility(light.shadow, light.center.xyz, s.position,
+                                       s.geometric_normal, to_light);
+#endif
+    return reflected;
+}
+#endif
+
+// Radiance that a surface sends to the viewer by direct light, in cd/m^2.
+vec3 direct_light(surface s, uvec2 pixel)
+{
+    vec3 sum = vec3(0.0);
+#if LIGHT_TILES
+    uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.size.z + pixel.x / LIGHT_TILE_EDGE;
+    for (uint word = 0u; word < frame.lights.z; word++) {
+        uint mask = light_masks[tile * frame.lights.z + word];
+        while (mask != 0u) {
+            uint bit = uint(findLSB(mask));
+            mask &= mask - 1u;
+            sum += punctual_light(s, lights[word * 32u + bit]);
+        }
+    }
+#else
+    for (uint i = 0u; i < frame.lights.x; i++)
+        sum += punctual_light(s, lights[i]);
+#endif
+#if AREA_LIGHTS
+    for (uint i = 0u; i < frame.lights.y; i++)
+        sum += area_light(s, area_lights[i]);
+#endif
+    return sum;
+}

@@ -1,0 +1,26 @@
+// Direct light of punctual lights and planar emitters. In: G-buffer, lights, shadow maps. Out:
+// radiance in cd/m^2, added to what the environment pass wrote (FIRST 0), to the emission (1), or
+// by itself (2: the debug view of direct light).
+#include "lib/gbuffer.glsl"
+#include "lib/lighting.glsl"
+#include "lib/radiance.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size.xy)))
+        return;
+    surface s = gbuffer_load(pixel);
+#if FIRST == 1
+    vec3 sum = s.emission;
+#elif FIRST == 2
+    vec3 sum = vec3(0.0);
+#else
+    vec3 sum = radiance[pixel_index(pixel)].rgb;
+#endif
+    if (s.shading < SHADE_UNLIT)
+        sum += direct_light(s, pixel);
+    radiance[pixel_index(pixel)] = vec4(sum, 1.0);
+}

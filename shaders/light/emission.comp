@@ -1,0 +1,13 @@
+// Emitted radiance only, for scenes without lights. In: G-buffer. Out: radiance in cd/m^2.
+#include "lib/gbuffer.glsl"
+#include "lib/radiance.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (all(lessThan(pixel, frame.size.xy)))
+        radiance[pixel_index(pixel)] = vec4(unpack_emission(gbuffer[2u * pixel_index(pixel) + 1u]),
+                                            1.0);
+}

@@ -1,0 +1,21 @@
+// Environment as background and ambient light; first of the passes that write radiance, so it adds
+// emission too. In: G-buffer, environment. Out: radiance in cd/m^2.
+#include "lib/gbuffer.glsl"
+#include "lib/environment.glsl"
+#include "lib/radiance.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size.xy)))
+        return;
+    surface s = gbuffer_load(pixel);
+    vec3 sum = s.emission;
+    if (s.shading == SHADE_BACKGROUND)
+        sum = environment_radiance(-s.view);
+    else if (s.shading != SHADE_UNLIT)
+        sum += environment_light(s);
+    radiance[pixel_index(pixel)] = vec4(sum, 1.0);
+}

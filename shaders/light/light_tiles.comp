@@ -1,0 +1,102 @@
+// Finds the lights that can reach each tile of LIGHT_TILE_EDGE^2 pixels, as a bit mask: no limit on
+// lights per tile, and an order that does not depend on timing. In: depth, lights. Out: masks.
+// Tests each light's sphere against the tile's frustum between its nearest and farthest depth
+// (Olsson and Assarsson 2011, "Tiled Shading").
+#include "lib/frame.glsl"
+
+layout(local_size_x = LINEAR_GROUP) in;
+
+layout(binding = UNIT_DEPTH) uniform sampler2D depth_texture;
+
+layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
+{
+    light_block lights[];
+};
+
+layout(std430, binding = BIND_LIGHT_MASKS) writeonly buffer light_mask_storage
+{
+    uint light_masks[];
+};
+
+shared uint nearest_bits;
+shared uint farthest_bits;
+
+// Depths are positive, so that their bits order as they do.
+void reduce_depths(uvec2 tile)
+{
+    if (gl_LocalInvocationIndex == 0u) {
+        nearest_bits = 0u;
+        farthest_bits = 0xffffffffu;
+    }
+    barrier();
+    uint nearest = 0u;
+    uint farthest = 0xffffffffu;
+    for (uint i = gl_LocalInvocationIndex; i < LIGHT_TILE_EDGE * LIGHT_TILE_EDGE;
+         i += LINEAR_GROUP) {
+        uvec2 pixel = tile * LIGHT_TILE_EDGE + uvec2(i % LIGHT_TILE_EDGE, i / LIGHT_TILE_EDGE);
+        if (any(greaterThanEqual(pixel, frame.size.xy)))
+            continue;
+        float depth = texelFetch(depth_texture, ivec2(pixel), 0).r;
+        if (depth > 0.0) {
+            nearest = max(nearest, floatBitsToUint(depth));
+            farthest = min(farthest, floatBitsToUint(depth));
+        }
+    }
+    atomicMax(nearest_bits, nearest);
+    atomicMin(farthest_bits, farthest);
+    barrier();
+}
+
+// Distances of the light's centre from the tile's four side planes, all through the eye.
+bool sphere_in_tile(vec3 center, float radius, vec3 planes[4], float near_distance,
+                    float far_distance)
+{
+    for (int i = 0; i < 4; i++)
+        if (dot(planes[i], center) > radius)
+            return false;
+    float along = dot(frame.forward.xyz, center);
+    return along + radius >= near_distance && along - radius <= far_distance;
+}
+
+void main()
+{
+    uvec2 tile = gl_WorkGroupID.xy;
+    reduce_depths(tile);
+    bool empty = nearest_bits == 0u;
+#if TRANSPARENCY
+    // Transparent layers may lie anywhere before the opaque depth.
+    float near_distance = 0.0;
+    float far_distance = 3.0e38;
+    empty = false;
+#else
+    float near_distance = view_distance(uintBitsToFloat(max(nearest_bits, 1u)));
+    float far_distance = view_distance(uintBitsToFloat(max(farthest_bits, 1u)));
+#endif
+    vec2 low = vec2(tile * LIGHT_TILE_EDGE) - 0.5;
+    vec2 high = low + float(LIGHT_TILE_EDGE);
+    vec3 corners[4] = {ray_direction(low), ray_direction(vec2(high.x, low.y)),
+                       ray_direction(high), ray_direction(vec2(low.x, high.y))};
+    vec3 planes[4];
+    for (int i = 0; i < 4; i++) {
+        planes[i] = normalize(cross(corners[i], corners[(i + 1) & 3]));
+        // Outwards: away from the opposite corner.
+        if (dot(planes[i], corners[(i + 2) & 3]) > 0.0)
+            planes[i] = -planes[i];
+    }
+    uint words = frame.lights.z;
+    uint tile_index = tile.y * frame.size.z + tile.x;
+    for (uint word = gl_LocalInvocationIndex; word < words; word += LINEAR_GROUP) {
+        uint mask = 0u;
+        for (uint bit = 0u; bit < 32u && !empty; bit++) {
+            uint index = word * 32u + bit;
+            if (index >= frame.lights.x)
+                break;
+            light_block light = lights[index];
+            bool unlimited = int(light.position.w) == LIGHT_DIRECTIONAL || light.direction.w <= 0.0;
+            if (unlimited || sphere_in_tile(light.position.xyz - frame.eye.xyz, light.direction.w,
+                                            planes, near_distance, far_distance))
+                mask |= 1u << bit;
+        }
+        light_masks[tile_index * words + word] = mask;
+    }
+}

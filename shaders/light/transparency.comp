@@ -1,0 +1,106 @@
+// Blended and transmissive layers over the opaque picture, per pixel in order of depth. In: lists of
+// fragments, geometry, materials, lights. Out: radiance in cd/m^2.
+//
+// A layer covers `alpha` of the pixel. Its diffuse part lets the share `transmission` through
+// unscattered, tinted by base colour (KHR_materials_transmission, thin-walled) and absorbed along
+// its thickness (KHR_materials_volume); its specular part reflects.
+#include "lib/geometry.glsl"
+#include "lib/lighting.glsl"
+#if ENVIRONMENT
+#include "lib/environment.glsl"
+#endif
+#include "lib/radiance.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
+{
+    uvec4 fragment_counts;
+    uint fragment_words[];
+};
+
+// Collects the ids of a pixel's nearest layers, farthest first. Ties go by id, so that the result
+// does not depend on the order in which fragments arrived.
+uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
+{
+    float distances[MAX_BLENDED_LAYERS];
+    uint count = 0u;
+    vec3 direction = ray_direction(vec2(pixel));
+    uint pixels = frame.size.x * frame.size.y;
+    uint slot = fragment_words[pixel.y * frame.size.x + pixel.x];
+    while (slot != 0u) {
+        uint base = pixels + 2u * (slot - 1u);
+        uint id = fragment_words[base + 1u];
+        slot = fragment_words[base];
+        triangle t = fetch_triangle(id);
+        vec3 w = plane_weights(t, direction);
+        float along = dot(frame.forward.xyz, t.corner + w.y * t.edges[0] + w.z * t.edges[1]);
+        if (count == MAX_BLENDED_LAYERS) {
+            if (along > distances[0] || (along == distances[0] && id > layers[0]))
+                continue;
+            for (uint i = 1u; i < MAX_BLENDED_LAYERS; i++) { // drop the farthest
+                distances[i - 1u] = distances[i];
+                layers[i - 1u] = layers[i];
+            }
+            count--;
+        }
+        uint at = count;
+        while (at > 0u && (distances[at - 1u] < along ||
+                           (distances[at - 1u] == along && layers[at - 1u] < id))) {
+            distances[at] = distances[at - 1u];
+            layers[at] = layers[at - 1u];
+            at--;
+        }
+        distances[at] = along;
+        layers[at] = id;
+        count++;
+    }
+    return count;
+}
+
+vec3 transmittance(surface s, layer through)
+{
+    float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
+    vec3 kept = vec3(1.0) - fresnel_schlick(s.f0, vec3(s.f90), n_v);
+    vec3 tint = s.base_color * kept * through.transmission;
+    if (through.attenuation_distance_m > 0.0 && through.thickness_m > 0.0)
+        tint *= pow(max(through.attenuation_color, vec3(1e-6)),
+                    vec3(through.thickness_m / through.attenuation_distance_m));
+    return vec3(1.0 - through.alpha) + through.alpha * tint;
+}
+
+vec3 layer_radiance(surface s, layer through, uvec2 pixel)
+{
+    if (s.shading == SHADE_UNLIT)
+        return s.emission * through.alpha;
+    vec3 sum = s.emission;
+    // The transmitted share of the diffuse part does not reflect: a surface with the reduced base
+    // colour says the same, and leaves the metallic part alone.
+    s.base_color *= 1.0 - through.transmission * (1.0 - s.metallic);
+#if LIGHTS
+    sum += direct_light(s, pixel);
+#endif
+#if ENVIRONMENT
+    sum += environment_light(s);
+#endif
+    return sum * through.alpha;
+}
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size.xy)))
+        return;
+    uint layers[MAX_BLENDED_LAYERS];
+    uint count = collect_layers(pixel, layers);
+    if (count == 0u)
+        return;
+    uint at = pixel.y * frame.size.x + pixel.x;
+    vec3 sum = radiance[at].rgb;
+    for (uint i = 0u; i < count; i++) {
+        layer through;
+        surface s = load_surface(layers[i], vec2(pixel), through);
+        sum = sum * transmittance(s, through) + layer_radiance(s, through, pixel);
+    }
+    radiance[at] = vec4(sum, 1.0);
+}

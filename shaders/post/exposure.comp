@@ -1,0 +1,67 @@
+// Automatic exposure from the luminance histogram. In: radiance. Out: exposure scale.
+// STAGE 0 counts log2 luminances; STAGE 1 (one group) takes their mean between two percentiles and
+// maps it to middle grey. Counts are integers, so the result does not depend on timing.
+#include "lib/radiance.glsl"
+
+layout(std430, binding = BIND_EXPOSURE) buffer exposure_storage
+{
+    vec4 exposure;         // x: the scale in use
+    uint histogram[HISTOGRAM_BINS];
+};
+
+const float LOWEST_STOP = -24.0;
+const float BINS_PER_STOP = 2.6;
+
+#if STAGE == 0
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+shared uint bins[HISTOGRAM_BINS];
+
+void main()
+{
+    for (uint i = gl_LocalInvocationIndex; i < HISTOGRAM_BINS; i += GROUP_EDGE * GROUP_EDGE)
+        bins[i] = 0u;
+    barrier();
+    // Each invocation looks at one of 2 x 2 pixels: plenty for a mean.
+    uvec2 pixel = gl_GlobalInvocationID.xy * 2u;
+    if (all(lessThan(pixel, frame.size.xy))) {
+        float value = luminance(radiance[pixel.y * frame.size.x + pixel.x].rgb);
+        if (value > 0.0 && !isinf(value)) {
+            float bin = (log2(value) - LOWEST_STOP) * BINS_PER_STOP;
+            atomicAdd(bins[uint(clamp(bin, 0.0, float(HISTOGRAM_BINS - 1)))], 1u);
+        }
+    }
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < HISTOGRAM_BINS; i += GROUP_EDGE * GROUP_EDGE)
+        if (bins[i] > 0u)
+            atomicAdd(histogram[i], bins[i]);
+}
+#else
+layout(local_size_x = 1) in;
+
+const float MIDDLE_GREY = 0.18;
+const float LOW_PERCENTILE = 0.3;
+const float HIGH_PERCENTILE = 0.95;
+
+void main()
+{
+    float total = 0.0;
+    for (uint i = 0u; i < HISTOGRAM_BINS; i++)
+        total += float(histogram[i]);
+    float skip = total * LOW_PERCENTILE;
+    float left = total * (HIGH_PERCENTILE - LOW_PERCENTILE);
+    float weight = 0.0;
+    float sum = 0.0;
+    for (uint i = 0u; i < HISTOGRAM_BINS; i++) {
+        float count = float(histogram[i]);
+        float skipped = min(count, skip);
+        skip -= skipped;
+        count = min(count - skipped, left);
+        left -= count;
+        weight += count;
+        sum += count * ((float(i) + 0.5) / BINS_PER_STOP + LOWEST_STOP);
+        histogram[i] = 0u;
+    }
+    exposure.x = weight > 0.0 ? MIDDLE_GREY * exp2(-sum / weight) : 1.0;
+}
+#endif

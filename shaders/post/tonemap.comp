@@ -1,0 +1,109 @@
+// Radiance to displayed pixels. In: radiance, exposure. Out, by OUTPUT:
+//   0: planar full-range YCbCr 4:2:0 (ITU-R BT.601 as JFIF has it); one invocation does 8 x 2 pixels
+//   1: RGBA8, 2: four floats, linear and unexposed; one invocation does 1 pixel
+// Scales bilinearly where the rendered size is not the shown one. DISPLAY_READY: values are shown
+// as they are (debug views).
+#include "lib/display.glsl"
+#include "lib/radiance.glsl"
+
+#if OUTPUT == 0
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+#else
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+#endif
+
+layout(std430, binding = BIND_OUTPUT) writeonly buffer output_storage
+{
+    uint words[];
+};
+
+layout(std430, binding = BIND_EXPOSURE) readonly buffer exposure_storage
+{
+    vec4 exposure;
+};
+
+vec3 radiance_at(uvec2 shown)
+{
+    if (frame.size.xy == frame.shown.xy)
+        return radiance[shown.y * frame.size.x + shown.x].rgb;
+    vec2 size = vec2(frame.size.xy);
+    vec2 at = clamp((vec2(shown) + 0.5) * size / vec2(frame.shown.xy) - 0.5, vec2(0.0), size - 1.0);
+    uvec2 low = uvec2(at);
+    uvec2 high = min(low + 1u, frame.size.xy - 1u);
+    vec2 part = at - vec2(low);
+    vec3 top = mix(radiance[low.y * frame.size.x + low.x].rgb,
+                   radiance[low.y * frame.size.x + high.x].rgb, part.x);
+    vec3 bottom = mix(radiance[high.y * frame.size.x + low.x].rgb,
+                      radiance[high.y * frame.size.x + high.x].rgb, part.x);
+    return mix(top, bottom, part.y);
+}
+
+vec3 displayed(uvec2 shown)
+{
+    vec3 color = radiance_at(min(shown, frame.shown.xy - 1u));
+#if DISPLAY_READY
+    return clamp(color, 0.0, 1.0);
+#else
+    float scale = frame.display.x > 0.0 ? frame.display.x : exposure.x * frame.display.z;
+    return transfer(tonemap(max(color, 0.0) * scale));
+#endif
+}
+
+#if OUTPUT == 0
+uint pack4(vec4 bytes)
+{
+    uvec4 b = uvec4(clamp(bytes, 0.0, 255.0) + 0.5);
+    return b.x | (b.y << 8) | (b.z << 16) | (b.w << 24);
+}
+
+void main()
+{
+    uvec2 block = gl_GlobalInvocationID.xy;
+    uvec2 first = block * uvec2(8u, 2u);
+    if (any(greaterThanEqual(first, frame.shown.xy)))
+        return;
+    vec4 cb, cr;
+    vec4 luma[4]; // two words of each of two rows
+    for (uint i = 0u; i < 4u; i++) {
+        vec3 sum = vec3(0.0);
+        for (uint j = 0u; j < 4u; j++) {
+            uint x = 2u * i + (j & 1u);
+            uint row = j >> 1;
+            vec3 rgb = displayed(first + uvec2(x, row)) * 255.0;
+            sum += rgb;
+            luma[2u * row + (x >> 2)][x & 3u] = dot(rgb, vec3(0.299, 0.587, 0.114));
+        }
+        sum *= 0.25;
+        cb[i] = dot(sum, vec3(-0.168735892, -0.331264108, 0.5)) + 128.0;
+        cr[i] = dot(sum, vec3(0.5, -0.418687589, -0.081312411)) + 128.0;
+    }
+    uint pitch = frame.shown.z / 4u;
+    uint chroma_pitch = frame.shown.w / 4u;
+    uint rows = (frame.shown.y + 1u) & ~1u;
+    uint at = first.y * pitch + block.x * 2u;
+    words[at] = pack4(luma[0]);
+    words[at + 1u] = pack4(luma[1]);
+    words[at + pitch] = pack4(luma[2]);
+    words[at + pitch + 1u] = pack4(luma[3]);
+    uint chroma = rows * pitch + block.y * chroma_pitch + block.x;
+    words[chroma] = pack4(cb);
+    words[chroma + (rows / 2u) * chroma_pitch] = pack4(cr);
+}
+#else
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.shown.xy)))
+        return;
+    uint at = pixel.y * frame.shown.x + pixel.x;
+#if OUTPUT == 1
+    words[at] = packUnorm4x8(vec4(displayed(pixel), 1.0));
+#else
+    vec3 color = radiance_at(pixel);
+    words[4u * at] = floatBitsToUint(color.r);
+    words[4u * at + 1u] = floatBitsToUint(color.g);
+    words[4u * at + 2u] = floatBitsToUint(color.b);
+    words[4u * at + 3u] = floatBitsToUint(1.0);
+#endif
+}
+#endif

@@ -1,0 +1,91 @@
+// Binding numbers, group sizes and limits: stated once for C and GLSL.
+#ifndef VOXCAST_SHADERS_SHARED_BINDINGS_H
+#define VOXCAST_SHADERS_SHARED_BINDINGS_H
+
+// Uniform blocks
+#define BIND_FRAME 0
+
+// Shader storage blocks
+#define BIND_INSTANCES     0
+#define BIND_ID_BLOCKS     1
+#define BIND_VERTICES      2
+#define BIND_INDICES       3
+#define BIND_MATERIALS     4
+#define BIND_TEXTURES      5
+#define BIND_LIGHTS        6
+#define BIND_AREA_LIGHTS   7
+#define BIND_SHADOW_VIEWS  8
+#define BIND_GBUFFER       9
+#define BIND_RADIANCE      10
+#define BIND_LIGHT_MASKS   11
+#define BIND_OUTPUT        12
+#define BIND_EXPOSURE      13
+#define BIND_FRAGMENTS     14
+#define BIND_ENVIRONMENT   15
+
+// Texture units
+#define UNIT_IDS              0
+#define UNIT_DEPTH            1
+#define UNIT_SHADOW_MAP       2
+#define UNIT_VIEW_SHADOW_MAP  3
+#define UNIT_ENVIRONMENT      4
+#define UNIT_MATERIAL_CLASSES 5
+#define MAX_TEXTURE_CLASSES   10
+#define UNIT_BACKGROUND       15
+
+// Work groups
+#define GROUP_EDGE       8
+#define LIGHT_TILE_EDGE  16
+#define LINEAR_GROUP     64
+#define HISTOGRAM_BINS   128
+
+// A visibility id is 1 + (block * 2^ID_BLOCK_BITS + triangle in block): 0 is the background.
+#define ID_BLOCK_BITS 7
+
+// Words of a vertex: position 0, normal 3, tangent 6, uv 10, colour 14.
+#define VERTEX_WORDS 18
+
+#define NO_SHADOW 0xffffffffu
+
+#define MAX_AREA_LIGHTS        16
+#define MAX_SHADOW_LAYERS      32
+#define MAX_VIEW_SHADOW_LAYERS 3
+#define MAX_BLENDED_LAYERS     16
+#define BLENDED_PER_PIXEL      8
+
+// instance.info.w and material flags
+#define INSTANCE_MIRRORED 1u
+
+#define LIGHT_DIRECTIONAL 0
+#define LIGHT_POINT       1
+#define LIGHT_SPOT        2
+
+#define SHADE_PBR         0u
+#define SHADE_BLINN_PHONG 1u
+#define SHADE_UNLIT       2u
+#define SHADE_BACKGROUND  3u
+
+#define MATERIAL_SHADING_MASK 3u
+#define MATERIAL_DOUBLE_SIDED 4u
+#define MATERIAL_ALPHA_MASK   8u
+#define MATERIAL_ALPHA_BLEND  16u
+#define MATERIAL_TEXTURED     32u
+#define MATERIAL_IOR_ONE      64u // no dielectric reflection at any angle
+
+#define TEXTURE_SLOTS                8
+#define TEXTURE_BASE_COLOR           0u
+#define TEXTURE_METALLIC_ROUGHNESS   1u
+#define TEXTURE_NORMAL               2u
+#define TEXTURE_OCCLUSION            3u
+#define TEXTURE_EMISSIVE             4u
+#define TEXTURE_TRANSMISSION         5u
+#define TEXTURE_SPECULAR             6u
+#define TEXTURE_SPECULAR_COLOR       7u
+
+#define TEXTURE_NONE       0xffffffffu
+#define TEXTURE_UV_SET_1   1u
+#define TEXTURE_NEAREST    2u
+#define TEXTURE_WRAP_U_BIT 2 // two bits each: 0 repeat, 1 clamp, 2 mirror
+#define TEXTURE_WRAP_V_BIT 4
+
+#endif

@@ -1,0 +1,71 @@
+// Block structs of C and GLSL alike.
+#ifndef VOXCAST_SHADERS_SHARED_BLOCKS_H
+#define VOXCAST_SHADERS_SHARED_BLOCKS_H
+
+#include "shared/types.h"
+
+// One frame of one view; std140.
+struct frame_block {
+    mat4 clip_from_world;
+    vec4 eye;        // world; w: distance of the near plane
+    vec4 forward;    // unit
+    vec4 ray_corner; // direction through the top left corner of pixel (0, 0), forward part 1
+    vec4 ray_dx;     // added per pixel to the right
+    vec4 ray_dy;     // added per pixel downwards
+    uvec4 size;      // rendered width, height; light tiles across, down
+    uvec4 shown;     // shown width, height; row pitches of Y and of Cb, Cr in bytes
+    uvec4 lights;    // lights, area lights, words of a tile's light mask, view shadow layers
+    uvec4 options;   // debug view, shading model for PBR materials, shadow taps, tone map
+    vec4 display;    // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, unused
+    vec4 environment; // intensity, rotation about +Y, unused, unused
+};
+
+// A placed primitive: one draw.
+struct instance_block {
+    mat4 world_from_local;
+    vec4 normal_rows[3]; // cofactor matrix times the sign of the determinant
+    uvec4 info;          // first index, material, first visibility id, flags
+    uvec4 source;        // node, primitive, unused, unused
+};
+
+struct material_block {
+    vec4 base_color;
+    vec4 emission; // cd/m^2; w: alpha cut-off
+    vec4 surface;  // metallic, roughness, normal scale, occlusion strength
+    vec4 dielectric; // F0 from IOR, specular weight, transmission, thickness in metres
+    vec4 specular_color; // w: attenuation distance in metres, 0 none
+    vec4 attenuation_color;
+    uvec4 info; // flags, first texture, mask of texture slots in use, unused
+};
+
+struct texture_block {
+    vec4 uv_row_u; // u' = dot(row.xyz, (u, v, 1))
+    vec4 uv_row_v;
+    uvec4 info; // class (array of one size), layer, flags, edge in texels
+};
+
+struct light_block {
+    vec4 position;  // world; w: type
+    vec4 direction; // unit, the way that light travels; w: range in metres, 0 unlimited
+    vec4 radiance;  // colour times intensity: cd or lux; w: source radius in metres
+    vec4 cone;      // scale and offset of the cosine (KHR_lights_punctual), cosine of outer, unused
+    uvec4 shadow;   // first shadow view or NO_SHADOW, count, light id, 1 if view cascades apply
+};
+
+// A planar emitter of up to four corners, counter-clockwise as seen from its lit side.
+struct area_light_block {
+    vec4 corners[4]; // world; w of the first: 1 if both sides emit
+    vec4 radiance;   // cd/m^2; w: area in m^2
+    vec4 center;     // w unused
+    vec4 normal;     // unit
+    uvec4 shadow;    // as light_block
+};
+
+struct shadow_view_block {
+    mat4 clip_from_world;
+    vec4 texel; // world size of a texel at distance 1 (perspective) or anywhere (directional);
+                // w: 1 for perspective
+    vec4 depth; // directional: world metres per unit of depth; perspective: near plane
+};
+
+#endif

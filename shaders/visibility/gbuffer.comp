@@ -1,0 +1,21 @@
+// Turns visibility ids into surface attributes. In: ids, depth, geometry, materials. Out: G-buffer.
+#include "lib/geometry.glsl"
+#include "lib/gbuffer.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+layout(binding = UNIT_IDS) uniform usampler2D ids;
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size.xy)))
+        return;
+    uint id = texelFetch(ids, ivec2(pixel), 0).r;
+    if (id == 0u) {
+        gbuffer_store_background(pixel);
+        return;
+    }
+    layer through;
+    gbuffer_store(pixel, load_surface(id, vec2(pixel), through));
+}

@@ -1,0 +1,65 @@
+// Writes the visibility id of the triangle (colour), after the alpha test where there is a mask.
+// LIST: instead appends the fragment to its pixel's list of transparent layers.
+#include "lib/material.glsl"
+
+layout(location = 0) flat in uint fragment_instance;
+
+layout(std430, binding = BIND_INSTANCES) readonly buffer instance_storage
+{
+    instance_block instances[];
+};
+
+#if ALPHA_MASK
+layout(location = 1) in vec4 fragment_uv;
+layout(location = 2) in float fragment_alpha;
+
+void test_alpha()
+{
+    material_block material = materials[instances[fragment_instance].info.y];
+    float alpha = material.base_color.a * fragment_alpha;
+#if TEXTURE_CLASSES > 0
+    texture_point point = texture_point(fragment_uv, dFdx(fragment_uv), dFdy(fragment_uv));
+    alpha *= sample_slot(material, TEXTURE_BASE_COLOR, point).a;
+#endif
+    if (alpha < material.emission.w)
+        discard;
+}
+#endif
+
+#if LIST
+layout(early_fragment_tests) in;
+
+layout(std430, binding = BIND_FRAGMENTS) buffer fragment_storage
+{
+    // Number of fragments met, room for them, -, -; heads of the pixels' lists (0: empty); then
+    // fragments: next + 1, visibility id.
+    uvec4 fragment_counts;
+    uint fragment_words[];
+};
+
+void append(uint id)
+{
+    uint pixel = uint(gl_FragCoord.y) * frame.size.x + uint(gl_FragCoord.x);
+    uint slot = atomicAdd(fragment_counts.x, 1u);
+    if (slot >= fragment_counts.y)
+        return;
+    uint base = frame.size.x * frame.size.y + 2u * slot;
+    fragment_words[base] = atomicExchange(fragment_words[pixel], slot + 1u);
+    fragment_words[base + 1u] = id;
+}
+#elif !SHADOW_VIEW
+layout(location = 0) out uint visibility_id;
+#endif
+
+void main()
+{
+#if ALPHA_MASK
+    test_alpha();
+#endif
+    uint id = instances[fragment_instance].info.z + uint(gl_PrimitiveID) + 1u;
+#if LIST
+    append(id);
+#elif !SHADOW_VIEW
+    visibility_id = id;
+#endif
+}
