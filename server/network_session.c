@@ -141,7 +141,6 @@ static bool check_permission(struct session *session, const struct command *comm
             return rpc_error_set(error, RPC_NOT_PERMITTED, "the token is wrong or missing");
         }
         session->said_hello = true;
-        lws_set_timer_usecs(session->wsi, LWS_SET_TIMER_USEC_CANCEL);
         return true;
     }
     if (!session->said_hello)
@@ -333,7 +332,8 @@ int network_session_callback(struct lws *wsi, enum lws_callback_reasons reason, 
     case LWS_CALLBACK_SERVER_WRITEABLE:
         return write_next(session);
     case LWS_CALLBACK_TIMER:
-        session_close(session, CLOSE_NO_HELLO, "session.hello did not come");
+        if (!session->said_hello)
+            session_close(session, CLOSE_NO_HELLO, "session.hello did not come");
         return 0;
     case LWS_CALLBACK_CLOSED:
         finish_session(session);
