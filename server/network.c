@@ -103,13 +103,12 @@ static void *run(void *user)
         lws_service(network->context, 0);
         deliver_all(network);
     }
-    // A last turn for the sessions to hear why they end.
-    uint64_t deadline = clock_now_us() + DRAIN_US;
+    // A last turn for the sessions to hear why they end. The library sleeps until something
+    // happens; each session's timer or timeout sees to it that something does.
     deliver_all(network);
-    while (network->sessions && clock_now_us() < deadline) {
-        lws_cancel_service(network->context);
+    uint64_t deadline = clock_now_us() + DRAIN_US;
+    while (network->sessions && clock_now_us() < deadline)
         lws_service(network->context, 0);
-    }
     return NULL;
 }
 

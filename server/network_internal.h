@@ -56,6 +56,7 @@ struct session {
     struct text_link *first, *last; // to send; owned
     size_t queued_bytes;
     int close_code; // 0: stays open
+    bool close_due; // the close message may go out
     const char *close_reason;
 };
 

@@ -7,6 +7,8 @@
 #include "protocol/command.h"
 #include "server/clock.h"
 
+#define CLOSE_DELAY_US 100000
+
 struct text *text_create(const char *content)
 {
     size_t length = strlen(content);
@@ -33,7 +35,9 @@ void session_close(struct session *session, int code, const char *reason)
               reason);
     session->close_code = code;
     session->close_reason = reason;
-    lws_callback_on_writable(session->wsi);
+    // What is on its way is read and thrown away first: the library resets a connection that brings
+    // more after the close message, and the client would not learn the reason.
+    lws_set_timer_usecs(session->wsi, CLOSE_DELAY_US);
     // A client that does not read never gets there.
     lws_set_timeout(session->wsi, PENDING_TIMEOUT_CLOSE_SEND, 5);
 }
@@ -136,10 +140,8 @@ static bool check_permission(struct session *session, const struct command *comm
     if (command->method == METHOD_SESSION_HELLO) {
         if (command->token[0] && (params->token[0] || params->viewer_token[0]))
             session->role = network_check_token(session->network, command->token);
-        if (session->role == ROLE_NONE) {
-            session_close(session, CLOSE_WRONG_TOKEN, "the token is wrong or missing");
+        if (session->role == ROLE_NONE)
             return rpc_error_set(error, RPC_NOT_PERMITTED, "the token is wrong or missing");
-        }
         session->said_hello = true;
         return true;
     }
@@ -182,6 +184,8 @@ static void handle_request(struct session *session, const struct rpc_request *re
     if (!command_parse(request, command, &error) || !check_permission(session, command, &error)) {
         bool known = error.code != RPC_METHOD_NOT_FOUND;
         send_error(session, &request->id, &error, known ? command : NULL);
+        if (session->role == ROLE_NONE && known && command->method == METHOD_SESSION_HELLO)
+            session_close(session, CLOSE_WRONG_TOKEN, "the token is wrong or missing");
         free(command);
         return;
     }
@@ -301,11 +305,11 @@ static int write_next(struct session *session)
         drop_first(session);
         if (written < 0)
             return -1;
-    } else if (session->close_code) {
+    } else if (session->close_due) {
         lws_close_reason(session->wsi, (enum lws_close_status)session->close_code,
                          (unsigned char *)session->close_reason, strlen(session->close_reason));
         return -1;
-    } else {
+    } else if (!session->close_code) {
         struct encoded_frame *frame = frame_stream_take(stream, session->slot);
         int written = frame ? lws_write(session->wsi, frame->bytes + FRAME_STREAM_PREFIX_BYTES,
                                         frame->message_bytes, LWS_WRITE_BINARY)
@@ -314,9 +318,19 @@ static int write_next(struct session *session)
         if (written < 0)
             return -1;
     }
-    if (session->first || session->close_code || frame_stream_has_frame(stream, session->slot))
+    if (session->first || session->close_due || frame_stream_has_frame(stream, session->slot))
         lws_callback_on_writable(session->wsi);
     return 0;
+}
+
+static void take_timer(struct session *session)
+{
+    if (session->close_code) {
+        session->close_due = true;
+        lws_callback_on_writable(session->wsi);
+    } else if (!session->said_hello) {
+        session_close(session, CLOSE_NO_HELLO, "session.hello did not come");
+    }
 }
 
 int network_session_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
@@ -332,8 +346,7 @@ int network_session_callback(struct lws *wsi, enum lws_callback_reasons reason, 
     case LWS_CALLBACK_SERVER_WRITEABLE:
         return write_next(session);
     case LWS_CALLBACK_TIMER:
-        if (!session->said_hello)
-            session_close(session, CLOSE_NO_HELLO, "session.hello did not come");
+        take_timer(session);
         return 0;
     case LWS_CALLBACK_CLOSED:
         finish_session(session);
