@@ -293,6 +293,11 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     return RENDER_DRAWN;
 }
 
+void renderer_view_invalidate(struct view *view)
+{
+    view->drawn = false;
+}
+
 bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wait,
                            struct frame_pixels *out_pixels)
 {

@@ -86,6 +86,9 @@ enum render_result {
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error);
 
+// Makes the next renderer_view_draw() draw everything anew even if nothing has changed.
+void renderer_view_invalidate(struct view *view);
+
 // Pictures in host memory. Row 0 at the top. Planes of FRAME_OUTPUT_YCBCR: Y of width x height,
 // Cb and Cr of (width+1)/2 x (height+1)/2; other outputs have one plane.
 struct frame_pixels {

@@ -33,8 +33,10 @@ static void place_cascade(struct frame *frame, uint32_t i)
         return;
     memcpy(view->cascade_center[i], center, sizeof(center));
     vec3 low, high;
-    glm_vec3_subs(center, half, low);
-    glm_vec3_adds(center, half, high);
+    for (int axis = 0; axis < 3; axis++)
+        low[axis] = center[axis] - half;
+    for (int axis = 0; axis < 3; axis++)
+        high[axis] = center[axis] + half;
     resident_directional_view(resident->directional_axis, low, high, resident->diagonal_m,
                               &view->cascades[i]);
     view->cascade_stale[i] = true;

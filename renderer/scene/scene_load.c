@@ -11,7 +11,7 @@
 
 static bool has_extension(const char *path, const char *extension)
 {
-    size_t length           = strlen(path);
+    size_t length = strlen(path);
     size_t extension_length = strlen(extension);
     return length > extension_length &&
            strcasecmp(path + length - extension_length, extension) == 0;
@@ -21,7 +21,7 @@ static bool has_extension(const char *path, const char *extension)
 static bool has_glb_magic(const char *path)
 {
     char magic[4] = {0};
-    FILE *file    = fopen(path, "rb");
+    FILE *file = fopen(path, "rb");
     if (!file) {
         return false;
     }
@@ -56,7 +56,7 @@ struct scene *scene_load(const char *source, struct error *out_error)
     char *canonical = NULL;
     if (strncmp(source, BUILTIN_PREFIX, strlen(BUILTIN_PREFIX)) == 0) {
         canonical = strdup(source);
-        scene     = scene_create_builtin(source + strlen(BUILTIN_PREFIX), out_error);
+        scene = scene_create_builtin(source + strlen(BUILTIN_PREFIX), out_error);
     } else {
         canonical = realpath(source, NULL);
         if (!canonical) {

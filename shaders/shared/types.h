@@ -4,7 +4,8 @@
 #define VOXCAST_SHADERS_SHARED_TYPES_H
 
 #ifdef __STDC__
-#include <cglm/types.h>
+#include <assert.h>
+#include <cglm/cglm.h>
 #include <stdint.h>
 typedef uint32_t uvec4[4];
 #endif

@@ -1,0 +1,155 @@
+// Picture files and the frames that go into them.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <turbojpeg.h>
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
+
+#include "server/cli.h"
+
+#define JPEG_FILE_QUALITY 95
+#define FRAMING_FOV_RAD   0.8f
+
+static bool has_extension(const char *path, const char *extension)
+{
+    size_t length = strlen(path), suffix = strlen(extension);
+    return length > suffix && strcasecmp(path + length - suffix, extension) == 0;
+}
+
+bool cli_output_of(const char *path, enum frame_output *out_output)
+{
+    if (has_extension(path, ".pfm"))
+        *out_output = FRAME_OUTPUT_LINEAR;
+    else if (has_extension(path, ".png") || has_extension(path, ".jpg") ||
+             has_extension(path, ".jpeg"))
+        *out_output = FRAME_OUTPUT_RGBA8;
+    else
+        return false;
+    return true;
+}
+
+// Portable Float Map: "PF", size, scale (negative: little endian), rows from the bottom up.
+static bool write_pfm(FILE *file, const struct frame_pixels *pixels)
+{
+    fprintf(file, "PF\n%u %u\n-1.0\n", pixels->width, pixels->height);
+    float *row = malloc(pixels->width * 3 * sizeof(float));
+    if (!row)
+        return false;
+    bool done = true;
+    for (uint32_t y = pixels->height; y-- > 0 && done;) {
+        const float *source =
+            (const float *)(pixels->planes[0] + (size_t)y * pixels->row_pitch_bytes[0]);
+        for (uint32_t x = 0; x < pixels->width; x++)
+            memcpy(row + 3 * x, source + 4 * x, 3 * sizeof(float));
+        done = fwrite(row, 3 * sizeof(float), pixels->width, file) == pixels->width;
+    }
+    free(row);
+    return done;
+}
+
+static bool write_jpeg(FILE *file, const struct frame_pixels *pixels)
+{
+    tjhandle compressor = tjInitCompress();
+    unsigned char *bytes = NULL;
+    unsigned long size = 0;
+    bool done =
+        compressor && tjCompress2(compressor, pixels->planes[0], (int)pixels->width,
+                                  (int)pixels->row_pitch_bytes[0], (int)pixels->height, TJPF_RGBX,
+                                  &bytes, &size, TJSAMP_444, JPEG_FILE_QUALITY, 0) == 0;
+    done = done && fwrite(bytes, 1, size, file) == size;
+    tjFree(bytes);
+    if (compressor)
+        tjDestroy(compressor);
+    return done;
+}
+
+static void append_to_file(void *file, void *data, int size)
+{
+    fwrite(data, 1, (size_t)size, file);
+}
+
+static bool write_png(FILE *file, const struct frame_pixels *pixels)
+{
+    // Alpha says nothing: the picture is opaque.
+    uint8_t *rgb = malloc((size_t)pixels->width * pixels->height * 3);
+    if (!rgb)
+        return false;
+    for (uint32_t y = 0; y < pixels->height; y++) {
+        const uint8_t *source = pixels->planes[0] + (size_t)y * pixels->row_pitch_bytes[0];
+        uint8_t *target = rgb + (size_t)y * pixels->width * 3;
+        for (uint32_t x = 0; x < pixels->width; x++)
+            memcpy(target + 3 * x, source + 4 * x, 3);
+    }
+    bool done = stbi_write_png_to_func(append_to_file, file, (int)pixels->width,
+                                       (int)pixels->height, 3, rgb, 0) != 0;
+    free(rgb);
+    return done;
+}
+
+bool cli_write_picture(const char *path, const struct frame_pixels *pixels, struct error *out_error)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        return error_set(out_error, "cannot write \"%s\": %m", path);
+    bool done;
+    if (pixels->output == FRAME_OUTPUT_LINEAR)
+        done = write_pfm(file, pixels);
+    else if (has_extension(path, ".png"))
+        done = write_png(file, pixels);
+    else
+        done = write_jpeg(file, pixels);
+    done = !ferror(file) && done;
+    if (fclose(file) != 0 || !done) {
+        remove(path);
+        return error_set(out_error, "cannot write all of \"%s\" (disk full?)", path);
+    }
+    return true;
+}
+
+void cli_default_camera(const struct scene *scene, float aspect, struct view_camera *out_camera)
+{
+    *out_camera = (struct view_camera){.up = {0.0f, 1.0f, 0.0f}, .fov_y_rad = FRAMING_FOV_RAD};
+    if (scene->camera_count > 0) {
+        scene_get_camera_placement(scene, 0, out_camera->eye, out_camera->target, out_camera->up);
+        out_camera->fov_y_rad = scene->cameras[0].fov_y_rad;
+        return;
+    }
+    double low[3], high[3];
+    if (!scene_bounds(scene, low, high)) {
+        out_camera->eye[2] = 1.0f;
+        return;
+    }
+    double radius = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+        radius += (high[axis] - low[axis]) * (high[axis] - low[axis]) / 4.0;
+    radius = fmax(sqrt(radius), 1e-6);
+    double half_fov = 0.5 * FRAMING_FOV_RAD;
+    if (aspect < 1.0f)
+        half_fov = atan(tan(half_fov) * aspect);
+    double distance = 1.05 * radius / sin(half_fov);
+    static const double direction[3] = {0.32, 0.28, 0.905};
+    for (int axis = 0; axis < 3; axis++) {
+        double center = 0.5 * (low[axis] + high[axis]);
+        out_camera->target[axis] = (float)center;
+        out_camera->eye[axis] = (float)(center + distance * direction[axis]);
+    }
+}
+
+bool cli_render_frame(struct renderer *renderer, struct view *view,
+                      const struct frame_params *params, struct frame_pixels *out_pixels,
+                      struct error *out_error)
+{
+    renderer_view_invalidate(view);
+    if (renderer_view_draw(renderer, view, params, out_error) != RENDER_DRAWN)
+        return false;
+    return renderer_view_collect(renderer, view, true, out_pixels) ||
+           error_set(out_error, "the GPU did not finish the frame");
+}

@@ -1,0 +1,388 @@
+// voxcast render: one scene to one picture.
+#include <cjson/cJSON.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/cli.h"
+#include "server/document.h"
+
+#define MAX_SETS   256
+#define MAX_FRAMES 100000
+
+static const char usage[] =
+    "usage: voxcast render SCENE|builtin:NAME --out FILE [OPTIONS]\n"
+    "\n"
+    "  --out FILE           .pfm: linear Rec.709 radiance in cd/m^2 before exposure and tone\n"
+    "                       mapping; .png or .jpg: the displayed picture\n"
+    "  --camera NAME|INDEX  a camera of the scene (default: the first, or one that frames it)\n"
+    "  --eye X,Y,Z --target X,Y,Z [--up X,Y,Z]   a camera of your own, in metres\n"
+    "  --fov-y-deg D        vertical field of view in degrees, 0.1 to 179\n"
+    "  --size WxH           1x1 to 3840x2160 (default 1280x720)\n"
+    "  --gi METHOD          method of global illumination: none\n"
+    "  --preset NAME        draft, interactive, high or final (default: final; with several\n"
+    "                       frames: interactive)\n"
+    "  --view VIEW          final, direct, albedo, normal, roughness, metallic, emission, depth,\n"
+    "                       ids, lights_per_tile or shadow_cascades\n"
+    "  --set KEY=VALUE      a parameter, such as lights.0.intensity=20 or exposure_ev=1; may be\n"
+    "                       given many times\n"
+    "  --frames N           render N frames and measure them (default 1)\n"
+    "  --move-eye X,Y,Z     displacement of eye and target per frame, in metres\n"
+    "  --stats FILE         write statistics as JSON\n"
+    "  --gpu WHICH          auto, software or a device index (default auto)\n";
+
+struct render_options {
+    const char *scene;
+    const char *out;
+    const char *stats;
+    const char *camera;
+    const char *gpu;
+    const char *preset;
+    bool has_eye, has_target, has_up, has_fov, has_move;
+    float eye[3], target[3], up[3], move[3];
+    float fov_y_rad;
+    uint32_t frames;
+    uint32_t set_count;
+    const char *sets[MAX_SETS];
+    uint32_t width, height;
+    const char *gi, *view;
+};
+
+static bool parse_vector(const char *text, float out_vector[3])
+{
+    float v[3];
+    char extra;
+    if (sscanf(text, "%f,%f,%f%c", &v[0], &v[1], &v[2], &extra) != 3)
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(v[i]))
+            return false;
+    memcpy(out_vector, v, sizeof(v));
+    return true;
+}
+
+static bool parse_size(const char *text, struct render_options *options)
+{
+    unsigned width, height;
+    char extra;
+    if (sscanf(text, "%5ux%5u%c", &width, &height, &extra) != 2 || width < VIEW_MIN_EDGE ||
+        width > VIEW_MAX_WIDTH || height < VIEW_MIN_EDGE || height > VIEW_MAX_HEIGHT)
+        return false;
+    options->width = width;
+    options->height = height;
+    return true;
+}
+
+static bool parse_number(const char *text, double low, double high, double *out_number)
+{
+    char *end;
+    double number = strtod(text, &end);
+    if (end == text || *end != '\0' || !(number >= low && number <= high))
+        return false;
+    *out_number = number;
+    return true;
+}
+
+// Takes one option; false with a message.
+static bool take_option(struct render_options *options, int option, const char *value,
+                        struct error *out_error)
+{
+    double number;
+    switch (option) {
+    case 'o':
+        options->out = value;
+        return true;
+    case 'c':
+        options->camera = value;
+        return true;
+    case 'e':
+        options->has_eye = true;
+        return parse_vector(value, options->eye) ||
+               error_set(out_error, "--eye is \"%s\"; three finite numbers X,Y,Z are needed",
+                         value);
+    case 't':
+        options->has_target = true;
+        return parse_vector(value, options->target) ||
+               error_set(out_error, "--target is \"%s\"; three finite numbers X,Y,Z are needed",
+                         value);
+    case 'u':
+        options->has_up = true;
+        return parse_vector(value, options->up) ||
+               error_set(out_error, "--up is \"%s\"; three finite numbers X,Y,Z are needed", value);
+    case 'm':
+        options->has_move = true;
+        return parse_vector(value, options->move) ||
+               error_set(out_error, "--move-eye is \"%s\"; three finite numbers X,Y,Z are needed",
+                         value);
+    case 'f':
+        if (!parse_number(value, 0.1, 179.0, &number))
+            return error_set(out_error, "--fov-y-deg is \"%s\"; allowed: 0.1 to 179", value);
+        options->has_fov = true;
+        options->fov_y_rad = (float)(number * M_PI / 180.0);
+        return true;
+    case 's':
+        return parse_size(value, options) ||
+               error_set(out_error, "--size is \"%s\"; allowed: WxH from 1x1 to %ux%u", value,
+                         VIEW_MAX_WIDTH, VIEW_MAX_HEIGHT);
+    case 'n':
+        if (!parse_number(value, 1, MAX_FRAMES, &number) || number != floor(number))
+            return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %d", value, MAX_FRAMES);
+        options->frames = (uint32_t)number;
+        return true;
+    case 'S':
+        if (options->set_count == MAX_SETS)
+            return error_set(out_error, "--set is given more than %d times", MAX_SETS);
+        options->sets[options->set_count++] = value;
+        return true;
+    case 'g':
+        options->gi = value;
+        return true;
+    case 'p':
+        options->preset = value;
+        return true;
+    case 'v':
+        options->view = value;
+        return true;
+    case 'j':
+        options->stats = value;
+        return true;
+    case 'G':
+        options->gpu = value;
+        return true;
+    default:
+        return error_set(out_error, "unknown or incomplete option; see voxcast render --help");
+    }
+}
+
+static const struct option long_options[] = {
+    {"out", required_argument, NULL, 'o'},
+    {"camera", required_argument, NULL, 'c'},
+    {"eye", required_argument, NULL, 'e'},
+    {"target", required_argument, NULL, 't'},
+    {"up", required_argument, NULL, 'u'},
+    {"fov-y-deg", required_argument, NULL, 'f'},
+    {"size", required_argument, NULL, 's'},
+    {"gi", required_argument, NULL, 'g'},
+    {"preset", required_argument, NULL, 'p'},
+    {"view", required_argument, NULL, 'v'},
+    {"set", required_argument, NULL, 'S'},
+    {"frames", required_argument, NULL, 'n'},
+    {"move-eye", required_argument, NULL, 'm'},
+    {"stats", required_argument, NULL, 'j'},
+    {"gpu", required_argument, NULL, 'G'},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
+};
+
+static bool check_options(const struct render_options *options, struct error *out_error)
+{
+    enum frame_output output;
+    if (!options->scene)
+        return error_set(out_error, "no scene given; see voxcast render --help");
+    if (!options->out)
+        return error_set(out_error, "no --out FILE given");
+    if (!cli_output_of(options->out, &output))
+        return error_set(out_error, "--out is \"%s\"; allowed extensions: .pfm, .png, .jpg",
+                         options->out);
+    if (options->has_eye != options->has_target)
+        return error_set(out_error, "--eye and --target are needed together");
+    if (options->camera && options->has_eye)
+        return error_set(out_error, "--camera and --eye exclude each other");
+    return true;
+}
+
+// Options of the command line, or false with a message; `out_help` if help was asked for.
+static bool parse_options(int argc, char **argv, struct render_options *options, bool *out_help,
+                          struct error *out_error)
+{
+    *options = (struct render_options){
+        .gpu = "auto", .width = 1280, .height = 720, .frames = 1, .up = {0.0f, 1.0f, 0.0f}};
+    *out_help = false;
+    opterr = 0;
+    optind = 1;
+    int option;
+    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
+        if (option == 'h') {
+            *out_help = true;
+            return true;
+        }
+        if (option == '?')
+            return error_set(out_error,
+                             "unknown or incomplete option \"%s\"; see voxcast render "
+                             "--help",
+                             argv[optind - 1]);
+        if (!take_option(options, option, optarg, out_error))
+            return false;
+    }
+    if (optind < argc)
+        options->scene = argv[optind++];
+    if (optind < argc)
+        return error_set(out_error, "unexpected argument \"%s\"", argv[optind]);
+    return check_options(options, out_error);
+}
+
+static bool choose_camera(const struct render_options *options, const struct scene *scene,
+                          struct view_camera *out_camera, struct error *out_error)
+{
+    cli_default_camera(scene, (float)options->width / (float)options->height, out_camera);
+    if (options->has_eye) {
+        memcpy(out_camera->eye, options->eye, sizeof(options->eye));
+        memcpy(out_camera->target, options->target, sizeof(options->target));
+        memcpy(out_camera->up, options->up, sizeof(options->up));
+    }
+    if (options->camera) {
+        uint32_t found = SCENE_NONE;
+        char *end;
+        unsigned long index = strtoul(options->camera, &end, 10);
+        if (*options->camera && !*end && index < scene->camera_count)
+            found = (uint32_t)index;
+        for (uint32_t i = 0; i < scene->camera_count && found == SCENE_NONE; i++)
+            if (strcmp(scene->cameras[i].name, options->camera) == 0)
+                found = i;
+        if (found == SCENE_NONE)
+            return error_set(out_error, "there is no camera \"%s\"; the scene has %u cameras",
+                             options->camera, scene->camera_count);
+        scene_get_camera_placement(scene, found, out_camera->eye, out_camera->target,
+                                   out_camera->up);
+        out_camera->fov_y_rad = scene->cameras[found].fov_y_rad;
+    }
+    if (options->has_fov)
+        out_camera->fov_y_rad = options->fov_y_rad;
+    return true;
+}
+
+// Applies --gi, --preset, --view and every --set.
+static bool apply_settings(const struct render_options *options, struct scene *scene,
+                           struct render_settings *settings, struct view_options *view,
+                           struct error *out_error)
+{
+    const char *preset = options->preset;
+    if (!preset)
+        preset = options->frames > 1 ? "interactive" : "final";
+    const char *const named[][2] = {{"settings.gi_method", options->gi},
+                                    {"view.quality", preset},
+                                    {"view.debug_view", options->view}};
+    for (int i = 0; i < 3; i++)
+        if (named[i][1] &&
+            !document_set_text(scene, settings, view, named[i][0], named[i][1], out_error))
+            return false;
+    for (uint32_t i = 0; i < options->set_count; i++) {
+        char key[256];
+        const char *equals = strchr(options->sets[i], '=');
+        if (!equals || (size_t)(equals - options->sets[i]) >= sizeof(key))
+            return error_set(out_error, "--set is \"%.200s\"; KEY=VALUE is needed",
+                             options->sets[i]);
+        snprintf(key, sizeof(key), "%.*s", (int)(equals - options->sets[i]), options->sets[i]);
+        if (!document_set_text(scene, settings, view, key, equals + 1, out_error))
+            return false;
+    }
+    return true;
+}
+
+static void move_camera(struct view_camera *camera, const float move[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        camera->eye[axis] += move[axis];
+        camera->target[axis] += move[axis];
+    }
+}
+
+static bool write_statistics(const char *path, struct cJSON *json, struct error *out_error)
+{
+    char *text = cJSON_Print(json);
+    FILE *file = text ? fopen(path, "wb") : NULL;
+    bool done = file && fputs(text, file) >= 0 && fputc('\n', file) != EOF;
+    if (file)
+        done = fclose(file) == 0 && done;
+    cJSON_free(text);
+    return done || error_set(out_error, "cannot write \"%s\"", path);
+}
+
+// Renders and measures the frames; the newest picture goes to the file.
+static int render_frames(const struct render_options *options, struct renderer *renderer,
+                         const struct scene *scene, struct frame_params *params)
+{
+    struct error error = {""};
+    struct view *view = renderer_view_create(renderer);
+    struct cli_measurement measurement = {0};
+    struct frame_pixels pixels;
+    int status = 0;
+    // One frame more, not measured, so that compiling shaders is not taken for rendering.
+    uint32_t warm_up = options->frames > 1 ? 1 : 0;
+    for (uint32_t i = 0; i < options->frames + warm_up && status == 0; i++) {
+        struct frame_statistics statistics;
+        if (!view || !cli_render_frame(renderer, view, params, &pixels, &error)) {
+            status = cli_fail(CLI_EXIT_RENDER, "%s", error.message);
+            break;
+        }
+        renderer_view_get_statistics(renderer, view, &statistics);
+        if (i >= warm_up && !cli_measurement_add(&measurement, &statistics))
+            status = cli_fail(CLI_EXIT_RENDER, "out of memory");
+        if (i + 1 == options->frames + warm_up && status == 0 &&
+            !cli_write_picture(options->out, &pixels, &error))
+            status = cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
+        renderer_view_release(renderer, view);
+        if (options->has_move)
+            move_camera(&params->camera, options->move);
+    }
+    if (status == 0 && options->stats) {
+        struct frame_statistics statistics;
+        renderer_view_get_statistics(renderer, view, &statistics);
+        struct cJSON *json =
+            cli_statistics_json(&measurement, &statistics, renderer_get_info(renderer), scene,
+                                options->width, options->height);
+        if (!write_statistics(options->stats, json, &error))
+            status = cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
+        cJSON_Delete(json);
+    }
+    cli_measurement_finish(&measurement);
+    renderer_view_destroy(renderer, &view);
+    return status;
+}
+
+int cli_render(int argc, char **argv)
+{
+    struct render_options options;
+    struct error error = {""};
+    bool help;
+    if (!parse_options(argc, argv, &options, &help, &error))
+        return cli_fail(CLI_EXIT_USAGE, "%s", error.message);
+    if (help) {
+        fputs(usage, stdout);
+        return 0;
+    }
+    struct scene *scene = scene_load(options.scene, &error);
+    if (!scene)
+        return cli_fail(CLI_EXIT_SCENE, "%s", error.message);
+    struct frame_params params = {.width = options.width, .height = options.height};
+    struct view_options view;
+    struct renderer *renderer = NULL;
+    int status = 0;
+    render_settings_init(&params.settings);
+    view_options_init(&view);
+    if (!choose_camera(&options, scene, &view.camera, &error) ||
+        !apply_settings(&options, scene, &params.settings, &view, &error)) {
+        status = cli_fail(CLI_EXIT_USAGE, "%s", error.message);
+        goto done;
+    }
+    params.camera = view.camera;
+    params.quality = view.quality;
+    params.debug_view = view.debug_view;
+    cli_output_of(options.out, &params.output);
+    renderer = renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);
+    if (!renderer || !renderer_set_scene(renderer, scene, &error)) {
+        status = cli_fail(CLI_EXIT_RENDER, "%s", error.message);
+        goto done;
+    }
+    status = render_frames(&options, renderer, scene, &params);
+    if (status == 0 && renderer_gl_error_count(renderer) > 0)
+        status = cli_fail(CLI_EXIT_RENDER, "the GL driver reported %llu errors",
+                          (unsigned long long)renderer_gl_error_count(renderer));
+done:
+    if (renderer)
+        renderer_destroy(&renderer);
+    scene_destroy(&scene);
+    return status;
+}

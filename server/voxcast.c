@@ -1,0 +1,38 @@
+// voxcast: the offline tool. Renders pictures, measures, and tells about the GPU.
+#include <stdio.h>
+#include <string.h>
+
+#include "server/cli.h"
+
+static const char usage[] =
+    "usage: voxcast COMMAND [OPTIONS]\n"
+    "\n"
+    "  render SCENE --out FILE   render a scene (glTF, GLB, OBJ or builtin:NAME) to .pfm, .png or\n"
+    "                            .jpg; see voxcast render --help\n"
+    "  info                      show the GL renderer, its limits and the built-in scenes\n"
+    "  bench                     measure frames of the built-in scenes; JSON on stdout; see\n"
+    "                            voxcast bench --help\n"
+    "  --version                 print the version\n";
+
+int main(int argc, char **argv)
+{
+    log_set_level(LOG_ERROR);
+    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+        strcmp(argv[1], "help") == 0) {
+        fputs(usage, argc < 2 ? stderr : stdout);
+        return argc < 2 ? CLI_EXIT_USAGE : 0;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        puts("voxcast " VOXCAST_VERSION);
+        return 0;
+    }
+    static const struct {
+        const char *name;
+        int (*run)(int argc, char **argv);
+    } commands[] = {{"render", cli_render}, {"info", cli_info}, {"bench", cli_bench}};
+    for (size_t i = 0; i < sizeof(commands) / sizeof(commands[0]); i++)
+        if (strcmp(argv[1], commands[i].name) == 0)
+            return commands[i].run(argc - 1, argv + 1);
+    return cli_fail(CLI_EXIT_USAGE, "unknown command \"%s\"; known are render, info and bench",
+                    argv[1]);
+}
