@@ -87,6 +87,14 @@ bool frame_stream_open(struct frame_stream *stream, uint32_t *out_slot, uint32_t
     return found;
 }
 
+bool frame_stream_is_full(struct frame_stream *stream)
+{
+    pthread_mutex_lock(&stream->mutex);
+    bool full = stream->totals.client_count >= stream->params.max_clients;
+    unlock(stream);
+    return full;
+}
+
 void frame_stream_close(struct frame_stream *stream, uint32_t slot_index)
 {
     struct slot *slot = lock_slot(stream, slot_index);

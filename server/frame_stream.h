@@ -51,6 +51,7 @@ void frame_stream_destroy(struct frame_stream **stream);
 
 // Network loop. False when all slots are taken. Client ids count up from 1.
 bool frame_stream_open(struct frame_stream *stream, uint32_t *out_slot, uint32_t *out_client_id);
+bool frame_stream_is_full(struct frame_stream *stream);
 void frame_stream_close(struct frame_stream *stream, uint32_t slot);
 
 // Network loop. The frame to send now, the caller's to free(), or NULL if there is none or two are

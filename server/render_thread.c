@@ -73,12 +73,13 @@ static void wake(void *user)
     mailbox_wake(thread->params.mailbox);
 }
 
-static bool any_wants_draw(struct render_thread *thread, bool dirty_only)
+// Whether a client could be sent a frame if the picture changed.
+static bool any_could_draw(struct render_thread *thread)
 {
     for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
         const struct render_client *client = &thread->clients[slot];
         if (client->client_id && !client->options.paused && !client->drawing &&
-            (client->dirty || !dirty_only) && frame_stream_wants_frame(thread->params.stream, slot))
+            frame_stream_wants_frame(thread->params.stream, slot))
             return true;
     }
     return false;
@@ -98,7 +99,7 @@ static uint64_t animate(struct render_thread *thread)
         return MAILBOX_NO_DEADLINE;
     }
     // Without anybody to draw for, time is made up for later.
-    if (!any_wants_draw(thread, false))
+    if (!any_could_draw(thread))
         return MAILBOX_NO_DEADLINE;
     if (now - thread->animated_at_us < ANIMATION_STEP_US)
         return thread->animated_at_us + ANIMATION_STEP_US;
@@ -142,7 +143,7 @@ static void turn(struct render_thread *thread)
     uint64_t deadline_us = animate(thread);
     bool drew = render_draw_next(thread);
     bool collected = render_collect(thread, !drew);
-    if (!drew && !collected && !any_wants_draw(thread, true))
+    if (!drew && !collected)
         mailbox_wait(thread->params.mailbox, deadline_us);
 }
 

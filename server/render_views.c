@@ -28,6 +28,7 @@ struct render_client *render_add_client(struct render_thread *thread, uint32_t c
         if (!client->view)
             return NULL;
         client->client_id = client_id;
+        client->statistics_at_us = clock_now_us(); // the first tell of encoded frames, too
         view_options_init(&client->options);
         if (thread->scene)
             render_reset_camera(thread->scene, &client->options.camera);

@@ -1,0 +1,46 @@
+// The daemon's options: flags, environment (VOXCASTD_*), and a file of key = value lines.
+#ifndef VOXCAST_SERVER_OPTIONS_H
+#define VOXCAST_SERVER_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "renderer/renderer.h"
+
+#define OPTIONS_MAX_ORIGINS 16u
+#define OPTIONS_TEXT_SIZE   1024u
+
+struct options {
+    char scene[OPTIONS_TEXT_SIZE];
+    char listen[OPTIONS_TEXT_SIZE]; // address
+    uint32_t port;                  // 0: any free one
+    char gpu[OPTIONS_TEXT_SIZE];
+    char scene_dir[OPTIONS_TEXT_SIZE]; // "" for none; likewise below
+    char web_dir[OPTIONS_TEXT_SIZE];
+    char token_file[OPTIONS_TEXT_SIZE];
+    char viewer_token_file[OPTIONS_TEXT_SIZE];
+    char allow_origin[OPTIONS_TEXT_SIZE]; // origins with commas between
+    uint32_t max_clients;
+    uint32_t message_bytes;
+    uint32_t message_rate; // a second, for each client
+    uint32_t jpeg_quality;
+    uint32_t jpeg_threads;
+    enum log_level log_level;
+};
+
+enum options_result {
+    OPTIONS_RUN,
+    OPTIONS_HELP, // --help was asked for
+    OPTIONS_WRONG,
+};
+
+// Flags win over the environment, which wins over the file, which wins over the defaults.
+// `environment` is as environ. On OPTIONS_WRONG the message names option, value and range.
+enum options_result options_read(int argument_count, char *const *arguments,
+                                 char *const *environment, struct options *out_options,
+                                 struct error *out_error);
+
+// The text of --help, written at `size` bytes at most.
+void options_write_help(char *out, size_t size);
+
+#endif

@@ -1,0 +1,192 @@
+// voxcastd: renders a scene and streams it to browsers.
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "protocol/limits.h"
+#include "server/network.h"
+#include "server/options.h"
+#include "server/render_thread.h"
+
+extern char **environ;
+
+struct daemon {
+    struct options options;
+    char token[PROTOCOL_MAX_TOKEN_BYTES + 1];
+    char viewer_token[PROTOCOL_MAX_TOKEN_BYTES + 1];
+    struct mailbox *mailbox;
+    struct outbox *outbox;
+    struct frame_stream *stream;
+    struct jpeg_workers *workers;
+    struct render_thread *render;
+    struct network *network;
+};
+
+static bool read_token(const char *path, char *out, struct error *error)
+{
+    char line[PROTOCOL_MAX_TOKEN_BYTES + 2] = "";
+    if (!path[0])
+        return true;
+    FILE *file = fopen(path, "r");
+    if (file && !fgets(line, sizeof(line), file))
+        line[0] = '\0';
+    if (file)
+        fclose(file);
+    line[strcspn(line, "\r\n")] = '\0';
+    if (!line[0] || strlen(line) > PROTOCOL_MAX_TOKEN_BYTES)
+        return error_set(error, "token file %.200s: want one line of 1 to %u bytes", path,
+                         PROTOCOL_MAX_TOKEN_BYTES);
+    strcpy(out, line);
+    return true;
+}
+
+static void choose_web_dir(struct options *options)
+{
+    static const char *const folders[] = {VOXCAST_SOURCE_DIR "/web_client",
+                                          VOXCAST_INSTALL_SHARE_DIR "/web_client"};
+    for (size_t i = 0; i < 2 && !options->web_dir[0]; i++) {
+        if (access(folders[i], R_OK) == 0)
+            snprintf(options->web_dir, sizeof(options->web_dir), "%s", folders[i]);
+    }
+}
+
+static void wake_network(void *user)
+{
+    struct daemon *daemon = user;
+    network_wake(daemon->network);
+}
+
+static void wake_render(void *user)
+{
+    struct daemon *daemon = user;
+    mailbox_wake(daemon->mailbox);
+}
+
+// The render thread cannot go on: ends the program as a signal would.
+static void render_failed(void *user)
+{
+    (void)user;
+    kill(getpid(), SIGTERM);
+}
+
+static bool create_parts(struct daemon *daemon, struct error *error)
+{
+    const struct options *options = &daemon->options;
+    daemon->mailbox = mailbox_create();
+    daemon->stream = frame_stream_create(&(struct frame_stream_params){
+        .max_clients = options->max_clients,
+        .wake_network = wake_network,
+        .wake_render = wake_render,
+        .user = daemon,
+    });
+    daemon->outbox = outbox_create(&(struct outbox_params){.wake = wake_network, .user = daemon});
+    if (!daemon->mailbox || !daemon->stream || !daemon->outbox)
+        return error_set(error, "out of memory");
+    daemon->network = network_create(
+        &(struct network_params){
+            .listen = options->listen,
+            .port = options->port,
+            .web_dir = options->web_dir,
+            .allow_origin = options->allow_origin,
+            .token = daemon->token,
+            .viewer_token = daemon->viewer_token,
+            .message_bytes = options->message_bytes,
+            .message_rate = options->message_rate,
+            .mailbox = daemon->mailbox,
+            .stream = daemon->stream,
+        },
+        error);
+    if (!daemon->network)
+        return false;
+    daemon->workers = jpeg_workers_create(&(struct jpeg_workers_params){
+        .thread_count = options->jpeg_threads,
+        .quality = (int)options->jpeg_quality,
+        .stream = daemon->stream,
+    });
+    return daemon->workers || error_set(error, "cannot start the JPEG threads");
+}
+
+static bool start_threads(struct daemon *daemon, struct error *error)
+{
+    const struct options *options = &daemon->options;
+    daemon->render = render_thread_start(&(struct render_thread_params){
+        .gpu = options->gpu,
+        .scene_source = options->scene,
+        .scene_dir = options->scene_dir[0] ? options->scene_dir : NULL,
+        .message_bytes = options->message_bytes,
+        .message_rate = options->message_rate,
+        .max_clients = options->max_clients,
+        .mailbox = daemon->mailbox,
+        .outbox = daemon->outbox,
+        .stream = daemon->stream,
+        .workers = daemon->workers,
+        .failed = render_failed,
+    });
+    if (!daemon->render || !network_start(daemon->network, daemon->outbox, daemon->render))
+        return error_set(error, "cannot start the threads");
+    const char *address = options->listen;
+    bool everywhere = strcmp(address, "0.0.0.0") == 0 || strcmp(address, "::") == 0;
+    printf("voxcastd: open http://%s:%u/\n", everywhere ? "127.0.0.1" : address,
+           network_get_port(daemon->network));
+    fflush(stdout);
+    return true;
+}
+
+// In the order that lets each part finish what the others wait for.
+static bool stop(struct daemon *daemon)
+{
+    bool fine = true;
+    if (daemon->render) {
+        struct render_status status;
+        render_thread_get_status(daemon->render, &status);
+        fine = !status.failed;
+    }
+    if (daemon->network)
+        network_stop(daemon->network);
+    if (daemon->outbox)
+        outbox_close(daemon->outbox);
+    render_thread_destroy(&daemon->render);
+    jpeg_workers_destroy(&daemon->workers);
+    network_destroy(&daemon->network);
+    outbox_destroy(&daemon->outbox);
+    frame_stream_destroy(&daemon->stream);
+    mailbox_destroy(&daemon->mailbox);
+    return fine;
+}
+
+int main(int argument_count, char **arguments)
+{
+    static struct daemon daemon;
+    struct error error = {""};
+    enum options_result result =
+        options_read(argument_count, arguments, environ, &daemon.options, &error);
+    if (result == OPTIONS_HELP) {
+        char help[8192];
+        options_write_help(help, sizeof(help));
+        fputs(help, stdout);
+        return 0;
+    }
+    // Before any thread starts: all inherit it, and sigwait() below gets the signals.
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &signals, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    log_set_level(daemon.options.log_level);
+    choose_web_dir(&daemon.options);
+    bool fine = result == OPTIONS_RUN &&
+                read_token(daemon.options.token_file, daemon.token, &error) &&
+                read_token(daemon.options.viewer_token_file, daemon.viewer_token, &error) &&
+                create_parts(&daemon, &error) && start_threads(&daemon, &error);
+    if (fine) {
+        int number = 0;
+        sigwait(&signals, &number);
+        log_write(LOG_INFO, "stopping signal=%d", number);
+    } else {
+        fprintf(stderr, "voxcastd: %s\n", error.message);
+    }
+    return stop(&daemon) && fine ? 0 : 1;
+}
