@@ -77,8 +77,8 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
                 decide(plan, (enum effect)i, true, "forced");
 }
 
-void effects_write_defines(uint32_t bits, uint32_t mask, uint32_t texture_classes, char *out_text,
-                           size_t out_size)
+void effects_write_defines(uint32_t bits, uint32_t mask, const struct resident *resident,
+                           char *out_text, size_t out_size)
 {
     size_t used = 0;
     out_text[0] = '\0';

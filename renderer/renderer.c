@@ -208,7 +208,8 @@ static bool draw_frame(struct frame *frame, struct error *out_error)
     gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     shadow_map_place_cascades(frame);
     if (frame->visibility_changed)
-        draw_list_fill(&view->draws, frame->resident, block.clip_from_world);
+        draw_list_fill(&view->draws, frame->resident, block.clip_from_world,
+                       frame->params->camera.eye);
     resident_bind(frame->resident);
     view_bind(view);
     return passes_execute(frame, out_error);

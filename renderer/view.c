@@ -160,8 +160,8 @@ bool view_prepare(struct view *view, const struct resident *resident,
         gpu_buffer_ensure(gpu, &view->output, "view.output", GPU_BUFFER_STATIC, output_bytes) &&
         gpu_buffer_ensure(gpu, &view->ring[view->ring_next].pixels, "readback", GPU_BUFFER_READBACK,
                           output_bytes) &&
-        draw_list_reserve(&view->draws, gpu, resident->counts.instances) &&
-        draw_list_reserve(&view->shadow_draws, gpu, resident->counts.instances);
+        draw_list_reserve(&view->draws, resident) &&
+        draw_list_reserve(&view->shadow_draws, resident);
     if (effect_bits & EFFECT_BIT(EFFECT_LIGHT_TILES)) {
         size_t tiles = (size_t)((width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE) *
                        ((height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE);

@@ -81,7 +81,7 @@ static bool draw_layer(struct frame *frame, const struct pass *pass,
                        const mat4 clip_from_world, struct error *out_error)
 {
     struct draw_list *draws = &frame->view->shadow_draws;
-    draw_list_fill(draws, frame->resident, clip_from_world);
+    draw_list_fill(draws, frame->resident, clip_from_world, NULL);
     gpu_begin_raster(frame->gpu, &(struct gpu_raster_params){
                                      .framebuffer = framebuffer,
                                      .width = SHADOW_MAP_EDGE,

@@ -16,12 +16,24 @@ enum draw_kind { DRAW_OPAQUE, DRAW_MASKED, DRAW_TRANSPARENT, DRAW_KIND_COUNT };
 #define DRAW_CULL_COUNT  3 // enum gpu_cull
 #define DRAW_GROUP_COUNT (DRAW_KIND_COUNT * DRAW_CULL_COUNT)
 
+// Up to 2^ID_BLOCK_BITS triangles of a primitive: what is culled at once. Local space. All its
+// triangles face away from an eye if dot(center - eye, axis) >= cutoff * |center - eye| + radius.
+struct resident_cluster {
+    float center[3];
+    float radius;
+    float axis[3];
+    float cutoff; // 2 where the triangles face too many ways to say
+};
+
 struct resident_instance {
     uint32_t node;
     uint32_t primitive;
     uint32_t index_first;
     uint32_t index_count;
-    uint8_t group; // kind * DRAW_CULL_COUNT + cull
+    uint32_t cluster_first; // in resident->clusters
+    uint32_t first_id;      // visibility id of the first triangle, less 1
+    float scale;            // largest stretch of the placement
+    uint8_t group;          // kind * DRAW_CULL_COUNT + cull
     bool visible;
     float bounds_min[3]; // world
     float bounds_max[3];
@@ -39,6 +51,20 @@ struct resident_counts {
     uint32_t blinn_phong_materials;
 };
 
+// Pictures of one colour space: an array per edge, and where each of the scene's images went.
+struct texture_space {
+    uint32_t class_count;
+    struct gpu_texture *classes[MAX_CLASSES_PER_SPACE];
+    struct image_place {
+        bool used;
+        uint32_t class_number;
+        uint32_t layer;
+        float mean[4]; // linear
+    } * places;
+};
+
+enum { TEXTURE_SPACE_COLOR, TEXTURE_SPACE_DATA };
+
 struct resident {
     struct gpu *gpu;
     const struct scene *scene;
@@ -47,12 +73,15 @@ struct resident {
 
     struct gpu_buffer *vertices;
     struct gpu_buffer *indices;
-    struct gpu_buffer *instance_ids; // 0, 1, 2 ...
     struct gpu_buffer *instance_blocks;
     struct gpu_buffer *id_blocks;
-    struct gpu_geometry *geometry;
+    struct gpu_buffer *raster_vertices;
+    struct gpu_buffer *raster_indices; // triangle by triangle as `indices`, but turned
+    struct gpu_geometry *geometry;     // of the two
     struct resident_instance *instances;
-    bool drawable; // any triangle at all
+    struct resident_cluster *clusters; // of all primitives
+    uint32_t cluster_count;            // of all instances: the most draws there can be
+    bool drawable;                     // any triangle at all
     float bounds_min[3];
     float bounds_max[3];
     float diagonal_m; // of the bounds; 1 where there is no geometry
@@ -92,12 +121,17 @@ bool resident_update(struct resident *resident, struct error *out_error);
 
 // Parts of the above, one file each.
 bool resident_upload_geometry(struct resident *resident);
+bool resident_upload_raster_mesh(struct resident *resident);
+bool resident_build_clusters(struct resident *resident);
 bool resident_upload_instances(struct resident *resident);
 bool resident_upload_textures(struct resident *resident);
 bool resident_upload_materials(struct resident *resident);
 bool resident_upload_lights(struct resident *resident);
 bool resident_upload_environment(struct resident *resident);
 void resident_count_materials(struct resident *resident);
+
+// Which space a texture slot reads from.
+int resident_texture_space(int slot);
 
 // Binds all buffers and textures of the scene to their slots.
 void resident_bind(const struct resident *resident);

@@ -42,7 +42,7 @@ struct material_block {
 struct texture_block {
     vec4 uv_row_u; // u' = dot(row.xyz, (u, v, 1))
     vec4 uv_row_v;
-    uvec4 info; // class (array of one size), layer, flags, edge in texels
+    uvec4 info; // packed as TEXTURE_* of bindings.h say; unused, unused, unused
 };
 
 struct light_block {
