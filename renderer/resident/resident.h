@@ -88,13 +88,8 @@ struct resident {
 
     struct gpu_buffer *materials;
     struct gpu_buffer *texture_blocks;
-    uint32_t texture_class_count;
-    struct gpu_texture *texture_classes[MAX_TEXTURE_CLASSES];
-    struct image_place {
-        uint32_t class_number;
-        uint32_t layer;
-        float mean[4];              // linear mean colour
-    } * color_places, *data_places; // by image id: as sRGB colour and as linear data
+    bool texture_transforms;                // any texture has a KHR_texture_transform of its own
+    struct texture_space texture_spaces[2]; // sRGB colour, linear data
 
     struct gpu_buffer *lights;
     struct gpu_buffer *area_lights;

@@ -123,8 +123,8 @@ void set_filter(inout footprint f, vec2 dx, vec2 dy, float edge)
 
 footprint find_footprint(uint texture_number, texture_point point)
 {
-    uint packed = textures[texture_number].info.x;
-    bool second = (packed & TEXTURE_UV_SET_1) != 0u;
+    uint bits = textures[texture_number].info.x;
+    bool second = (bits & TEXTURE_UV_SET_1) != 0u;
     vec2 at = second ? point.uv.zw : point.uv.xy;
     vec2 dx = second ? point.dx.zw : point.dx.xy;
     vec2 dy = second ? point.dy.zw : point.dy.xy;
@@ -136,16 +136,16 @@ footprint find_footprint(uint texture_number, texture_point point)
     dy = vec2(dot(row_u.xy, dy), dot(row_v.xy, dy));
 #endif
     footprint f;
-    float edge = float(1u << ((packed >> TEXTURE_EDGE_BIT) & 15u));
-    f.class_number = (packed >> TEXTURE_CLASS_BIT) & 15u;
+    float edge = float(1u << ((bits >> TEXTURE_EDGE_BIT) & 15u));
+    f.class_number = (bits >> TEXTURE_CLASS_BIT) & 15u;
     set_filter(f, dx, dy, edge);
-    if ((packed & TEXTURE_NEAREST) != 0u && f.lod < 0.0)
+    if ((bits & TEXTURE_NEAREST) != 0u && f.lod < 0.0)
         at = (floor(at * edge) + 0.5) / edge;
-    at.x = wrap_coordinate(at.x, (packed >> TEXTURE_WRAP_U_BIT) & 3u, edge);
-    at.y = wrap_coordinate(at.y, (packed >> TEXTURE_WRAP_V_BIT) & 3u, edge);
+    at.x = wrap_coordinate(at.x, (bits >> TEXTURE_WRAP_U_BIT) & 3u, edge);
+    at.y = wrap_coordinate(at.y, (bits >> TEXTURE_WRAP_V_BIT) & 3u, edge);
     // Far texture coordinates lose their fraction in the sampler's fixed point: keep them small.
     at -= floor(at * (1.0 / 64.0)) * 64.0;
-    f.at = vec3(at, float(packed >> TEXTURE_LAYER_BIT));
+    f.at = vec3(at, float(bits >> TEXTURE_LAYER_BIT));
     return f;
 }
 
