@@ -1,6 +1,7 @@
 #include "renderer/renderer.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,6 @@ struct renderer {
     struct scene *scene;
     uint64_t scene_number; // tells scenes apart that were loaded one after another
     uint32_t view_count;
-    float anisotropy; // now set in the texture arrays
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
 };
@@ -100,7 +100,6 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
     renderer->resident = resident;
     renderer->scene = scene;
     renderer->scene_number++;
-    renderer->anisotropy = 0.0f;
     return true;
 }
 
@@ -191,19 +190,10 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->display[2] = exp2f(settings->exposure_ev);
     block->environment[0] = frame->resident->scene->environment.intensity;
     block->environment[1] = frame->resident->scene->environment.rotation_rad;
+    block->textures[0] = frame->quality->texture_anisotropy;
 }
 
-static void set_anisotropy(struct renderer *renderer, float wanted)
-{
-    float anisotropy = fminf(wanted, gpu_get_info(renderer->gpu)->max_anisotropy);
-    if (renderer->anisotropy == anisotropy)
-        return;
-    for (uint32_t i = 0; i < renderer->resident->texture_class_count; i++)
-        gpu_texture_set_anisotropy(renderer->resident->texture_classes[i], anisotropy);
-    renderer->anisotropy = anisotropy;
-}
-
-static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)
+static bool draw_frame(struct frame *frame, struct error *out_error)
 {
     struct view *view = frame->view;
     if (!view_prepare(view, frame->resident, frame->params, frame->plan.bits))
@@ -219,7 +209,6 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     shadow_map_place_cascades(frame);
     if (frame->visibility_changed)
         draw_list_fill(&view->draws, frame->resident, block.clip_from_world);
-    set_anisotropy(renderer, frame->quality->texture_anisotropy);
     resident_bind(frame->resident);
     view_bind(view);
     return passes_execute(frame, out_error);
@@ -270,7 +259,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .visibility_changed = !same_scene || !same_surfaces(view, params, &revisions),
     };
     effects_plan(&frame.plan, resident, params);
-    if (!draw_frame(renderer, &frame, out_error)) {
+    if (!draw_frame(&frame, out_error)) {
         view->drawn = false;
         return RENDER_FAILED;
     }
@@ -393,7 +382,7 @@ bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, 
     camera_frame_init(&frame, camera);
     float direction[3];
     camera_ray(&frame, width, height, x + 0.5f, y + 0.5f, direction);
-    return ray_scene_intersect(renderer->ray_scene, camera->eye, direction, INFINITY, out_hit);
+    return ray_scene_intersect(renderer->ray_scene, camera->eye, direction, FLT_MAX, out_hit);
 }
 
 uint32_t renderer_poll_shaders(struct renderer *renderer, struct error *out_error)

@@ -36,10 +36,6 @@ static void read_info(struct gpu *gpu)
              (const char *)glGetString(GL_VERSION));
     info->software = strstr(info->gl_renderer, "llvmpipe") ||
                      strstr(info->gl_renderer, "softpipe") || strstr(info->gl_renderer, "swr");
-    info->max_anisotropy = 1.0f;
-    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic") ||
-        epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic"))
-        glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &info->max_anisotropy);
     GLint edge = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &edge);
     info->max_texture_edge = (uint32_t)edge;

@@ -76,7 +76,6 @@ struct gpu_texture *gpu_texture_create(struct gpu *gpu, const struct gpu_texture
     }
     glObjectLabel(GL_TEXTURE, texture->name, -1, params->label);
     set_sampling(texture->name, &texture->params);
-    gpu_texture_set_anisotropy(texture, params->anisotropy);
     return texture;
 }
 
@@ -110,14 +109,6 @@ void gpu_texture_write(struct gpu_texture *texture, uint32_t level, uint32_t lay
 void gpu_texture_generate_levels(struct gpu_texture *texture)
 {
     glGenerateTextureMipmap(texture->name);
-}
-
-void gpu_texture_set_anisotropy(struct gpu_texture *texture, float anisotropy)
-{
-    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic") ||
-        epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic"))
-        glTextureParameterf(texture->name, GL_TEXTURE_MAX_ANISOTROPY,
-                            anisotropy < 1.0f ? 1.0f : anisotropy);
 }
 
 uint32_t gpu_texture_name(const struct gpu_texture *texture)

@@ -138,7 +138,6 @@ static bool create_arrays(struct resident *resident, const struct texture_class 
             .filter = GPU_FILTER_LINEAR,
             .repeat_u = true,
             .repeat_v = true,
-            .anisotropy = DEFAULT_ANISOTROPY,
         };
         resident->texture_classes[i] = gpu_texture_create(resident->gpu, &params);
         if (!resident->texture_classes[i])

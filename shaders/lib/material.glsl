@@ -22,6 +22,8 @@ struct texture_point {
     vec4 dy;
 };
 
+const float MAX_FOOTPRINT_TEXELS = 1e7;
+
 float wrap_coordinate(float u, uint mode, float edge)
 {
     if (mode == 0u)
@@ -32,45 +34,66 @@ float wrap_coordinate(float u, uint mode, float edge)
     return clamp(u, half_texel, 1.0 - half_texel);
 }
 
-vec4 sample_class(uint class_number, vec3 at, vec2 dx, vec2 dy)
+vec4 sample_class(uint class_number, vec3 at, float lod)
 {
 #if TEXTURE_CLASSES > 1
     if (class_number == 1u)
-        return textureGrad(texture_classes[1], at, dx, dy);
+        return textureLod(texture_classes[1], at, lod);
 #endif
 #if TEXTURE_CLASSES > 2
     if (class_number == 2u)
-        return textureGrad(texture_classes[2], at, dx, dy);
+        return textureLod(texture_classes[2], at, lod);
 #endif
 #if TEXTURE_CLASSES > 3
     if (class_number == 3u)
-        return textureGrad(texture_classes[3], at, dx, dy);
+        return textureLod(texture_classes[3], at, lod);
 #endif
 #if TEXTURE_CLASSES > 4
     if (class_number == 4u)
-        return textureGrad(texture_classes[4], at, dx, dy);
+        return textureLod(texture_classes[4], at, lod);
 #endif
 #if TEXTURE_CLASSES > 5
     if (class_number == 5u)
-        return textureGrad(texture_classes[5], at, dx, dy);
+        return textureLod(texture_classes[5], at, lod);
 #endif
 #if TEXTURE_CLASSES > 6
     if (class_number == 6u)
-        return textureGrad(texture_classes[6], at, dx, dy);
+        return textureLod(texture_classes[6], at, lod);
 #endif
 #if TEXTURE_CLASSES > 7
     if (class_number == 7u)
-        return textureGrad(texture_classes[7], at, dx, dy);
+        return textureLod(texture_classes[7], at, lod);
 #endif
 #if TEXTURE_CLASSES > 8
     if (class_number == 8u)
-        return textureGrad(texture_classes[8], at, dx, dy);
+        return textureLod(texture_classes[8], at, lod);
 #endif
 #if TEXTURE_CLASSES > 9
     if (class_number == 9u)
-        return textureGrad(texture_classes[9], at, dx, dy);
+        return textureLod(texture_classes[9], at, lod);
 #endif
-    return textureGrad(texture_classes[0], at, dx, dy);
+    return textureLod(texture_classes[0], at, lod);
+}
+
+// Anisotropic filtering: trilinear samples along the longer axis of the pixel's footprint, at the
+// level that fits the shorter one (as EXT_texture_filter_anisotropic describes it). Done here
+// because the loops of software samplers grow without bound with the gradients. `place` is class
+// and layer.
+vec4 sample_anisotropic(uvec2 place, vec2 at, vec2 dx, vec2 dy, float edge)
+{
+    float length_x = length(dx) * edge;
+    float length_y = length(dy) * edge;
+    vec2 axis = length_x > length_y ? dx : dy;
+    float major = max(max(length_x, length_y), 1e-6);
+    if (!(major < MAX_FOOTPRINT_TEXELS)) // gradients of triangles seen edge-on can be anything
+        return sample_class(place.x, vec3(at, float(place.y)), log2(edge));
+    float minor = max(min(length_x, length_y), major / frame.textures.x);
+    float lod = log2(minor);
+    float samples = lod > 0.0 || major > 1.0 ? clamp(ceil(major / max(minor, 1.0)), 1.0, frame.textures.x) : 1.0;
+    vec4 sum = vec4(0.0);
+    for (float i = 0.5; i < samples; i += 1.0)
+        sum += sample_class(place.x, vec3(at + axis * (i / samples - 0.5), float(place.y)), lod);
+    return sum / samples;
 }
 
 // White where the slot has no texture.
@@ -96,6 +119,6 @@ vec4 sample_slot(material_block material, uint slot, texture_point point)
     at.y = wrap_coordinate(at.y, (flags >> TEXTURE_WRAP_V_BIT) & 3u, edge);
     // Far texture coordinates lose their fraction in the sampler's fixed point: keep them small.
     at -= floor(at * (1.0 / 64.0)) * 64.0;
-    return sample_class(texture.info.x, vec3(at, float(texture.info.y)), dx, dy);
+    return sample_anisotropic(texture.info.xy, at, dx, dy, edge);
 }
 #endif

@@ -18,6 +18,7 @@ struct frame_block {
     uvec4 options;   // debug view, shading model for PBR materials, shadow taps, tone map
     vec4 display;    // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, unused
     vec4 environment; // intensity, rotation about +Y, unused, unused
+    vec4 textures;    // most samples of an anisotropic look-up, unused, unused, unused
 };
 
 // A placed primitive: one draw.

@@ -1,0 +1,214 @@
+// Proves that rays meet the triangles that are drawn: nearest hit, placement, mirrored and singular
+// nodes, visibility, alpha-masked holes, and refusal of arguments that are not finite. How: scenes
+// of one or two quads with hits known by hand, and the published Cornell box where present.
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/scene/ray_scene.h"
+#include "renderer/scene/scene_load.h"
+#include "support_scenes.h"
+
+#define TOLERANCE 1e-5f
+
+static const float NO_ROTATION[4] = {0, 0, 0, 1};
+
+// A quad from (-1, -1) to (1, 1) in the plane z = 0, facing +Z, placed by node 0.
+static struct scene *make_quad(const struct scene_material *material)
+{
+    struct scene *scene = scene_create("quad");
+    assert_non_null(scene);
+    struct scene_vertex vertices[4] = {0};
+    for (int i = 0; i < 4; i++) {
+        struct scene_vertex *vertex = &vertices[i];
+        vertex->position[0] = i == 1 || i == 2 ? 1 : -1;
+        vertex->position[1] = i >= 2 ? 1 : -1;
+        vertex->normal[2] = 1;
+        vertex->uv[0][0] = vertex->position[0] * 0.5f + 0.5f;
+        vertex->uv[0][1] = vertex->position[1] * 0.5f + 0.5f;
+        vertex->color[3] = 1;
+    }
+    const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+    assert_int_equal(scene_add_material(scene, material), 0);
+    assert_int_equal(scene_add_mesh(scene, "quad"), 0);
+    assert_int_equal(scene_add_primitive(scene, vertices, 4, indices, 6, 0), 0);
+    assert_int_equal(scene_add_node(scene, "quad", SCENE_NONE), 0);
+    scene->nodes[0].mesh = 0;
+    scene_update_world_transforms(scene);
+    return scene;
+}
+
+static bool cast_down(const struct ray_scene *ray_scene, float x, float y, struct ray_hit *out_hit)
+{
+    return ray_scene_intersect(ray_scene, (float[3]){x, y, 5}, (float[3]){0, 0, -2}, 100, out_hit);
+}
+
+static void test_hit_is_described(void **state)
+{
+    (void)state;
+    struct scene_material material;
+    scene_material_init(&material, "white");
+    struct scene *scene = make_quad(&material);
+    struct ray_scene *ray_scene = ray_scene_create(scene);
+    assert_non_null(ray_scene);
+    struct ray_hit hit;
+    assert_true(cast_down(ray_scene, 0.5f, -0.25f, &hit));
+    assert_int_equal(hit.node, 0);
+    assert_int_equal(hit.primitive, 0);
+    assert_int_equal(hit.triangle, 0);
+    assert_int_equal(hit.material, 0);
+    assert_float_equal(hit.distance, 2.5f, TOLERANCE); // directions of length 2
+    assert_float_equal(hit.position[0], 0.5f, TOLERANCE);
+    assert_float_equal(hit.position[2], 0, TOLERANCE);
+    assert_float_equal(hit.normal[2], 1, TOLERANCE);
+    // The triangle's corners are (-1,-1), (1,-1), (1,1).
+    assert_float_equal(hit.barycentric[0], 0.375f, TOLERANCE);
+    assert_float_equal(hit.barycentric[1], 0.375f, TOLERANCE);
+    assert_false(cast_down(ray_scene, 1.5f, 0, &hit));
+    assert_false(
+        ray_scene_intersect(ray_scene, (float[3]){0, 0, 5}, (float[3]){0, 0, -2}, 2.4f, &hit));
+    // From behind, the normal turns to the ray.
+    assert_true(
+        ray_scene_intersect(ray_scene, (float[3]){0, 0, -5}, (float[3]){0, 0, 1}, 100, &hit));
+    assert_float_equal(hit.normal[2], -1, TOLERANCE);
+    ray_scene_destroy(&ray_scene);
+    assert_null(ray_scene);
+    scene_destroy(&scene);
+}
+
+static void test_placement_and_visibility(void **state)
+{
+    (void)state;
+    struct scene_material material;
+    scene_material_init(&material, "white");
+    struct scene *scene = make_quad(&material);
+    struct ray_scene *ray_scene = ray_scene_create(scene);
+    struct ray_hit hit;
+    // Mirrored in X, three times as wide, one metre up.
+    scene_set_node_transform(scene, 0, (float[3]){0, 0, 1}, NO_ROTATION, (float[3]){-3, 1, 1});
+    ray_scene_update_transforms(ray_scene);
+    assert_true(cast_down(ray_scene, 2.5f, 0, &hit));
+    assert_float_equal(hit.position[2], 1, TOLERANCE);
+    assert_float_equal(hit.normal[2], 1, TOLERANCE);
+    // A scale of 0 cannot be hit, nor can a hidden node.
+    scene_set_node_transform(scene, 0, (float[3]){0, 0, 0}, NO_ROTATION, (float[3]){1, 0, 1});
+    ray_scene_update_transforms(ray_scene);
+    assert_false(cast_down(ray_scene, 0.1f, 0, &hit));
+    scene_set_node_transform(scene, 0, (float[3]){0, 0, 0}, NO_ROTATION, (float[3]){1, 1, 1});
+    scene_set_node_visible(scene, 0, false);
+    ray_scene_update_transforms(ray_scene);
+    assert_false(cast_down(ray_scene, 0.1f, 0, &hit));
+    scene_set_node_visible(scene, 0, true);
+    ray_scene_update_transforms(ray_scene);
+    assert_true(cast_down(ray_scene, 0.1f, 0, &hit));
+    ray_scene_destroy(&ray_scene);
+    scene_destroy(&scene);
+}
+
+static void test_holes_of_masks(void **state)
+{
+    (void)state;
+    struct scene_material material;
+    scene_material_init(&material, "mask");
+    material.alpha_mode = SCENE_ALPHA_MASK;
+    material.alpha_cutoff = 0.5f;
+    struct scene_texture *texture = &material.textures[SCENE_TEXTURE_BASE_COLOR];
+    *texture = (struct scene_texture){.image = 0, .nearest = true, .scale = {1, 1}};
+    struct scene *scene = make_quad(&material);
+    // Left column opaque, right column a hole.
+    uint8_t *rgba = malloc(2 * 4);
+    assert_non_null(rgba);
+    memcpy(rgba, (uint8_t[8]){255, 255, 255, 255, 255, 255, 255, 0}, 8);
+    struct image *image = image_create(2, 1, rgba);
+    assert_int_equal(scene_add_image(scene, image), 0);
+    image_release(&image);
+    struct ray_scene *ray_scene = ray_scene_create(scene);
+    struct ray_hit hit;
+    assert_true(cast_down(ray_scene, -0.5f, 0.1f, &hit));
+    assert_false(cast_down(ray_scene, 0.5f, 0.1f, &hit));
+    // The same picture does not matter to an opaque material, nor after the texture is shifted.
+    material.alpha_mode = SCENE_ALPHA_OPAQUE;
+    scene_set_material(scene, 0, &material);
+    assert_true(cast_down(ray_scene, 0.5f, 0.1f, &hit));
+    material.alpha_mode = SCENE_ALPHA_MASK;
+    material.textures[SCENE_TEXTURE_BASE_COLOR].offset[0] = 0.5f;
+    scene_set_material(scene, 0, &material);
+    assert_true(cast_down(ray_scene, 0.5f, 0.1f, &hit));
+    assert_false(cast_down(ray_scene, -0.5f, 0.1f, &hit));
+    ray_scene_destroy(&ray_scene);
+    scene_destroy(&scene);
+}
+
+static void test_arguments_that_are_not_finite(void **state)
+{
+    (void)state;
+    struct scene_material material;
+    scene_material_init(&material, "white");
+    struct scene *scene = make_quad(&material);
+    struct ray_scene *ray_scene = ray_scene_create(scene);
+    struct ray_hit hit = {.node = 77};
+    const float origin[3] = {0, 0, 5}, down[3] = {0, 0, -1}, zero[3] = {0};
+    assert_false(ray_scene_intersect(ray_scene, (float[3]){NAN, 0, 5}, down, 100, &hit));
+    assert_false(ray_scene_intersect(ray_scene, origin, (float[3]){0, INFINITY, -1}, 100, &hit));
+    assert_false(ray_scene_intersect(ray_scene, origin, down, INFINITY, &hit));
+    assert_false(ray_scene_intersect(ray_scene, origin, down, NAN, &hit));
+    assert_false(ray_scene_intersect(ray_scene, origin, down, -1, &hit));
+    assert_false(ray_scene_intersect(ray_scene, origin, zero, 100, &hit));
+    assert_int_equal(hit.node, 77);
+    ray_scene_destroy(&ray_scene);
+    scene_destroy(&scene);
+}
+
+static void test_empty_scene(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_create("empty");
+    struct ray_scene *ray_scene = ray_scene_create(scene);
+    struct ray_hit hit;
+    assert_non_null(ray_scene);
+    assert_false(cast_down(ray_scene, 0, 0, &hit));
+    ray_scene_destroy(&ray_scene);
+    scene_destroy(&scene);
+}
+
+static void test_cornell_box(void **state)
+{
+    (void)state;
+    const char *path = support_scene_path("cornell/cornell.glb");
+    if (!path) {
+        skip();
+    }
+    struct error error;
+    struct scene *scene = scene_import_gltf(path, &error);
+    assert_non_null(scene);
+    struct ray_scene *ray_scene = ray_scene_create(scene);
+    float eye[3], target[3], up[3], direction[3];
+    scene_get_camera_placement(scene, 0, eye, target, up);
+    for (int axis = 0; axis < 3; axis++) {
+        direction[axis] = target[axis] - eye[axis];
+    }
+    struct ray_hit hit;
+    assert_true(ray_scene_intersect(ray_scene, eye, direction, 100, &hit));
+    assert_true(hit.distance > 0.8f && hit.distance < 1.4f); // the box is 0.559 m deep, 0.8 m off
+    ray_scene_destroy(&ray_scene);
+    scene_destroy(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_hit_is_described),
+        cmocka_unit_test(test_placement_and_visibility),
+        cmocka_unit_test(test_holes_of_masks),
+        cmocka_unit_test(test_arguments_that_are_not_finite),
+        cmocka_unit_test(test_empty_scene),
+        cmocka_unit_test(test_cornell_box),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

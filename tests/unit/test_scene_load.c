@@ -1,0 +1,102 @@
+// Proves that scene_load() picks the importer by content and extension, names what it supports, and
+// notes the files that a scene was read from. How: small files in a temporary folder.
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "renderer/scene/scene_load.h"
+
+static char folder[] = "/tmp/voxcast-load-XXXXXX";
+
+static const char *write_file(const char *name, const char *text)
+{
+    static char path[256];
+    snprintf(path, sizeof(path), "%s/%s", folder, name);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
+    fclose(file);
+    return path;
+}
+
+static void check_loads(const char *path)
+{
+    struct error error = {{0}};
+    struct scene *scene = scene_load(path, &error);
+    if (!scene) {
+        fail_msg("%s", error.message);
+    }
+    char *canonical = realpath(path, NULL);
+    assert_string_equal(scene->source_path, canonical);
+    assert_int_equal(scene->source_file_count, 1);
+    assert_string_equal(scene->source_files[0], canonical);
+    free(canonical);
+    scene_destroy(&scene);
+    unlink(path);
+}
+
+static void test_kinds(void **state)
+{
+    (void)state;
+    check_loads(write_file("a.gltf", "{\"asset\":{\"version\":\"2.0\"}}"));
+    check_loads(write_file("A.OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+}
+
+static void test_unknown_kind_and_missing_file(void **state)
+{
+    (void)state;
+    struct error error;
+    const char *path = write_file("a.fbx", "Kaydara");
+    assert_null(scene_load(path, &error));
+    assert_non_null(strstr(error.message, ".gltf"));
+    assert_non_null(strstr(error.message, ".obj"));
+    unlink(path);
+    assert_null(scene_load(path, &error));
+    assert_non_null(strstr(error.message, "a.fbx"));
+    assert_null(scene_load(folder, &error));
+    assert_non_null(strstr(error.message, "regular file"));
+}
+
+static void test_builtin(void **state)
+{
+    (void)state;
+    char source[128];
+    struct error error = {{0}};
+    snprintf(source, sizeof(source), "builtin:%s", scene_builtin_name(0));
+    struct scene *scene = scene_load(source, &error);
+    assert_non_null(scene);
+    assert_string_equal(scene->source_path, source);
+    assert_int_equal(scene->source_file_count, 0);
+    scene_destroy(&scene);
+    assert_null(scene_load("builtin:no-such-scene", &error));
+    assert_true(strlen(error.message) > 0);
+}
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kinds),
+        cmocka_unit_test(test_unknown_kind_and_missing_file),
+        cmocka_unit_test(test_builtin),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
