@@ -23,6 +23,7 @@ struct renderer {
     struct scene *scene;
     uint64_t scene_number; // tells scenes apart that were loaded one after another
     uint32_t view_count;
+    struct view *views[RENDERER_MAX_VIEWS]; // the first view_count
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
 };
@@ -95,6 +96,8 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
         if (!resident)
             return false;
     }
+    for (uint32_t i = 0; i < renderer->view_count; i++)
+        view_release_cascades(renderer->views[i]);
     ray_scene_destroy(&renderer->ray_scene);
     resident_destroy(&renderer->resident);
     renderer->resident = resident;
@@ -109,14 +112,17 @@ struct view *renderer_view_create(struct renderer *renderer)
         return NULL;
     struct view *view = view_create(renderer->gpu);
     if (view)
-        renderer->view_count++;
+        renderer->views[renderer->view_count++] = view;
     return view;
 }
 
 void renderer_view_destroy(struct renderer *renderer, struct view **view)
 {
-    if (*view)
-        renderer->view_count--;
+    for (uint32_t i = 0; i < renderer->view_count; i++)
+        if (renderer->views[i] == *view) {
+            renderer->views[i] = renderer->views[--renderer->view_count];
+            break;
+        }
     view_destroy(view);
 }
 
@@ -181,8 +187,8 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
                    (resident->counts.lights + 31) / 32, frame->view->cascade_count},
            sizeof(uvec4));
     memcpy(block->options,
-           (uvec4){(uint32_t)params->debug_view, (uint32_t)settings->shading_model,
-                   frame->quality->shadow_taps, (uint32_t)settings->tonemap},
+           (uvec4){(uint32_t)params->debug_view, 0, frame->quality->shadow_taps,
+                   (uint32_t)settings->tonemap},
            sizeof(uvec4));
     bool fixed = settings->exposure_mode == EXPOSURE_FIXED;
     block->display[0] = fixed ? exp2f(settings->exposure_ev) : 0.0f;
@@ -205,8 +211,9 @@ static bool draw_frame(struct frame *frame, struct error *out_error)
     frame->tiles_y = (view->height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
     struct frame_block block;
     fill_frame_block(frame, &block);
-    gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     shadow_map_place_cascades(frame);
+    shadow_map_relate_cascades(frame, &block);
+    gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     if (frame->visibility_changed)
         draw_list_fill(&view->draws, frame->resident, block.clip_from_world,
                        frame->params->camera.eye);

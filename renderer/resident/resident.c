@@ -48,9 +48,7 @@ void resident_destroy(struct resident **resident_slot)
             gpu_texture_destroy(&resident->texture_spaces[space].classes[i]);
         free(resident->texture_spaces[space].places);
     }
-    for (uint32_t i = 0; i < MAX_SHADOW_LAYERS; i++)
-        gpu_framebuffer_destroy(&resident->shadow_framebuffers[i]);
-    gpu_texture_destroy(&resident->shadow_map);
+    shadow_map_destroy(&resident->shadow_map);
     gpu_texture_destroy(&resident->environment_levels);
     gpu_texture_destroy(&resident->environment_background);
     free(resident->instances);
@@ -127,7 +125,7 @@ void resident_bind(const struct resident *resident)
     gpu_bind_storage(gpu, BIND_LIGHTS, resident->lights);
     gpu_bind_storage(gpu, BIND_AREA_LIGHTS, resident->area_lights);
     gpu_bind_storage(gpu, BIND_ENVIRONMENT, resident->environment);
-    gpu_bind_texture(gpu, UNIT_SHADOW_MAP, resident->shadow_map);
+    gpu_bind_texture(gpu, UNIT_SHADOW_MAP, shadow_map_texture(resident->shadow_map));
     gpu_bind_texture(gpu, UNIT_ENVIRONMENT, resident->environment_levels);
     gpu_bind_texture(gpu, UNIT_BACKGROUND, resident->environment_background);
     static const uint32_t units[2] = {UNIT_COLOR_CLASSES, UNIT_DATA_CLASSES};

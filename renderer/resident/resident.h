@@ -6,10 +6,12 @@
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/gpu.h"
 #include "renderer/gpu/texture.h"
+#include "renderer/resident/shadow_layers.h"
 #include "shared/bindings.h"
 #include "shared/blocks.h"
 
-#define SHADOW_MAP_EDGE 2048u
+#define SHADOW_MAP_EDGE   2048u
+#define MAX_VIEW_CASCADES (RENDERER_MAX_VIEWS * MAX_CASCADES)
 
 // Draws are sorted into groups of one kind and one face culling.
 enum draw_kind { DRAW_OPAQUE, DRAW_MASKED, DRAW_TRANSPARENT, DRAW_KIND_COUNT };
@@ -95,10 +97,11 @@ struct resident {
     struct gpu_buffer *area_lights;
     uint32_t directional_light; // index in `lights` of the one with view cascades, or NO_SHADOW
     float directional_axis[3];
-    struct gpu_texture *shadow_map;
-    struct gpu_framebuffer *shadow_framebuffers[MAX_SHADOW_LAYERS];
+    struct shadow_map *shadow_map;
     struct shadow_view_block shadow_views[MAX_SHADOW_LAYERS];
     bool shadow_stale[MAX_SHADOW_LAYERS];
+    uint64_t shadow_epoch_seen;
+    uint32_t sun_shadow_view; // of directional_light
     uint64_t shadow_revision; // counts changes of any shadow caster or light
 
     struct gpu_buffer *environment;

@@ -27,7 +27,6 @@
 #define UNIT_IDS              0
 #define UNIT_DEPTH            1
 #define UNIT_SHADOW_MAP       2
-#define UNIT_VIEW_SHADOW_MAP  3
 #define UNIT_ENVIRONMENT      4
 #define UNIT_COLOR_CLASSES    5
 #define UNIT_DATA_CLASSES     10
@@ -50,7 +49,7 @@
 
 #define MAX_AREA_LIGHTS        16
 #define MAX_SHADOW_LAYERS      32
-#define MAX_VIEW_SHADOW_LAYERS 3
+#define MAX_CASCADES           3
 #define MAX_BLENDED_LAYERS     16
 #define BLENDED_PER_PIXEL      8
 
