@@ -194,6 +194,7 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->display[0] = fixed ? exp2f(settings->exposure_ev) : 0.0f;
     block->display[1] = settings->gamma;
     block->display[2] = exp2f(settings->exposure_ev);
+    block->display[3] = settings->shading_model == SHADING_MODEL_BLINN_PHONG ? 1.0f : 0.0f;
     block->environment[0] = frame->resident->scene->environment.intensity;
     block->environment[1] = frame->resident->scene->environment.rotation_rad;
     block->textures[0] = frame->quality->texture_anisotropy;

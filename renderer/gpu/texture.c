@@ -32,7 +32,8 @@ static void set_sampling(GLuint name, const struct gpu_texture_params *params)
     bool linear = params->filter != GPU_FILTER_NEAREST;
     GLint minify = linear ? GL_LINEAR : GL_NEAREST;
     if (linear && params->levels > 1)
-        minify = GL_LINEAR_MIPMAP_LINEAR;
+        minify = params->filter == GPU_FILTER_LINEAR_NEAREST_LEVEL ? GL_LINEAR_MIPMAP_NEAREST
+                                                                   : GL_LINEAR_MIPMAP_LINEAR;
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, minify);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_WRAP_S, params->repeat_u ? GL_REPEAT : GL_CLAMP_TO_EDGE);

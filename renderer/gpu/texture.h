@@ -14,8 +14,9 @@ enum gpu_format {
 
 enum gpu_filter {
     GPU_FILTER_NEAREST,
-    GPU_FILTER_LINEAR,        // and mipmaps where there are any
-    GPU_FILTER_SHADOW_COMPARE // linear, comparing reference >= depth (reversed Z)
+    GPU_FILTER_LINEAR,               // and between mipmaps where there are any
+    GPU_FILTER_LINEAR_NEAREST_LEVEL, // linear within the nearest mipmap: half the texels
+    GPU_FILTER_SHADOW_COMPARE        // linear, comparing reference >= depth (reversed Z)
 };
 
 struct gpu_texture_params {

@@ -130,19 +130,22 @@ static void find_uses(const struct resident *resident, int space_number,
 static bool create_arrays(struct resident *resident, struct texture_space *space, bool color,
                           const struct texture_class *classes)
 {
+    // Steps between levels do not show in roughness and normals as they do in colour.
+    bool software = gpu_get_info(resident->gpu)->software;
     for (uint32_t i = 0; i < space->class_count; i++) {
         space->classes[i] = gpu_texture_create(
-            resident->gpu, &(struct gpu_texture_params){
-                               .label = "textures",
-                               .format = color ? GPU_FORMAT_SRGB8_ALPHA8 : GPU_FORMAT_RGBA8,
-                               .width = 1u << classes[i].edge_log2,
-                               .height = 1u << classes[i].edge_log2,
-                               .layers = classes[i].layers,
-                               .levels = classes[i].edge_log2 + 1,
-                               .filter = GPU_FILTER_LINEAR,
-                               .repeat_u = true,
-                               .repeat_v = true,
-                           });
+            resident->gpu,
+            &(struct gpu_texture_params){
+                .label = "textures",
+                .format = color ? GPU_FORMAT_SRGB8_ALPHA8 : GPU_FORMAT_RGBA8,
+                .width = 1u << classes[i].edge_log2,
+                .height = 1u << classes[i].edge_log2,
+                .layers = classes[i].layers,
+                .levels = classes[i].edge_log2 + 1,
+                .filter = software && !color ? GPU_FILTER_LINEAR_NEAREST_LEVEL : GPU_FILTER_LINEAR,
+                .repeat_u = true,
+                .repeat_v = true,
+            });
         if (!space->classes[i])
             return false;
     }

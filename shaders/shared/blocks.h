@@ -17,7 +17,8 @@ struct frame_block {
     uvec4 shown;     // shown width, height; row pitches of Y and of Cb, Cr in bytes
     uvec4 lights;    // lights, area lights, words of a tile's light mask, cascades
     uvec4 options;   // debug view, shadow view of the sun, shadow taps, tone map
-    vec4 display;    // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, unused
+    vec4 display;    // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, 1 if all
+                     // materials are to be Blinn-Phong
     vec4 environment; // intensity, rotation about +Y, unused, unused
     vec4 textures;    // most samples of an anisotropic look-up, unused, unused, unused
     // From (u, v, depth) in the sun's view of the scene to each cascade, smallest first.
