@@ -93,7 +93,7 @@ static uint8_t *decode_stb(const uint8_t *bytes, size_t size, uint32_t width, ui
 
 struct image *image_decode(const uint8_t *bytes, size_t size, struct error *out_error)
 {
-    uint32_t width, height;
+    uint32_t width = 0, height = 0;
     if (!image_decode_size(bytes, size, &width, &height, out_error)) {
         return NULL;
     }
