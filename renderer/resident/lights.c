@@ -60,17 +60,23 @@ static void add_cube_views(struct light_builder *builder, const float origin[3])
         add_perspective_view(builder, origin, axes[face][0], axes[face][1], fov);
 }
 
-void resident_directional_view(const float axis[3], const float box_min[3], const float box_max[3],
-                               float near_reach_m, struct shadow_view_block *out_view)
+void resident_directional_view(const struct resident *resident, const float axis[3],
+                               const float box_min[3], const float box_max[3],
+                               struct shadow_view_block *out_view)
 {
     vec3 up = {0.0f, 1.0f, 0.0f};
     if (fabsf(axis[1]) > 0.9f)
         up[0] = 1.0f, up[1] = 0.0f;
     mat4 view_from_world;
     glm_lookat_rh((vec3){0, 0, 0}, (float *)axis, up, view_from_world);
-    double low[3], high[3];
+    double low[3], high[3], scene_low[3], scene_high[3];
     placement_transform_box((const float *)view_from_world, box_min, box_max, low, high);
-    high[2] += near_reach_m; // casters may stand nearer to the sun than what they shade
+    placement_transform_box((const float *)view_from_world, resident->bounds_min,
+                            resident->bounds_max, scene_low, scene_high);
+    // A flat scene still needs some depth, or the smallest bias would leave it.
+    double pad = 0.01 * resident->diagonal_m;
+    low[2] = scene_low[2] - pad;
+    high[2] = scene_high[2] + pad;
     *out_view = (struct shadow_view_block){0};
     mat4 clip_from_view;
     glm_mat4_zero(clip_from_view);
@@ -135,8 +141,8 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
     block->shadow[0] = builder->layers;
     block->shadow[1] = needed;
     if (directional) {
-        resident_directional_view(block->direction, resident->bounds_min, resident->bounds_max,
-                                  0.0f, &builder->views[builder->layers++]);
+        resident_directional_view(resident, block->direction, resident->bounds_min,
+                                  resident->bounds_max, &builder->views[builder->layers++]);
         if (resident->directional_light == NO_SHADOW) {
             resident->directional_light = block->shadow[2];
             resident->sun_shadow_view = block->shadow[0];

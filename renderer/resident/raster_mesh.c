@@ -53,6 +53,7 @@ static bool add_triangle(struct mesh_builder *builder, const uint32_t corners[3]
             return false;
         builder->placed[corners[i]] = at[i];
     }
+    assert(builder->vertices);
     int first = 0;
     while (first < 3 && builder->vertices[at[first]].triangle != UNUSED)
         first++;

@@ -134,10 +134,11 @@ int resident_texture_space(int slot);
 // Binds all buffers and textures of the scene to their slots.
 void resident_bind(const struct resident *resident);
 
-// The orthographic view of a box along `axis` (unit, the way that light travels), with a reach of
-// `near_reach_m` towards the light beyond the box for casters outside it.
-void resident_directional_view(const float axis[3], const float box_min[3], const float box_max[3],
-                               float near_reach_m, struct shadow_view_block *out_view);
+// The orthographic view along `axis` (unit, the way that light travels) of a box, as deep as the
+// whole scene.
+void resident_directional_view(const struct resident *resident, const float axis[3],
+                               const float box_min[3], const float box_max[3],
+                               struct shadow_view_block *out_view);
 
 // Finds the planar emitters among the visible instances. Returns their number.
 uint32_t resident_find_area_lights(const struct resident *resident,
