@@ -257,7 +257,8 @@ export class App {
     });
     new ResizeObserver(() => this.overlay.draw()).observe(byId('stage'));
     setInterval(() => {
-      byId('frame-rate').textContent = `${this.stats.framesPerSecond.toFixed(0)} fps`;
+      const rate = this.stats.framesPerSecond;
+      byId('frame-rate').textContent = rate > 0 ? `${Math.ceil(rate)} fps` : 'at rest';
     }, RATE_MS);
   }
 
@@ -265,6 +266,7 @@ export class App {
     this.#acknowledge(header);
     byId('waiting').hidden = true;
     this.overlay.pose = this.sender.poseOf(header.cameraRevision);
+    this.overlay.aspect = header.width / header.height;
     this.overlay.draw();
     this.stats.takeFrame(header, decodeMs);
     // The canvas reaches the screen with the frame that the browser draws next.

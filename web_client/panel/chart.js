@@ -33,7 +33,7 @@ export class Chart {
           { ...axis, size: 22, space: 60, values: (/** @type {any} */ _plot, /** @type {number[]} */ at) => at.map((v) => `${v} s`) },
           { ...axis, size: 38, space: 24 },
         ],
-        series: [{}, { stroke: color, width: 1.5, fill: `${color}22`, points: { show: false } }],
+        series: [{}, { stroke: color, width: 1.5, fill: `${color}22`, points: { show: true, size: 3, fill: color } }],
       },
       [[], []],
       box,

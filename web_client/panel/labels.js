@@ -1,6 +1,8 @@
 /** Units that end the names of parameters, and what people read instead. */
 const UNIT_ENDINGS = /** @type {Record<string, string>} */ ({ _m: 'm', _rad: '°', _s: 's', _ev: 'EV' });
 
+const ABBREVIATIONS = new Set(['gi', 'ggx', 'pbr', 'ior', 'fov', 'aces', 'gpu', 'jpeg']);
+
 /**
  * What people read for a parameter: its name in words, and its unit.
  * @param {{name: string, unit: string}} parameter
@@ -14,6 +16,9 @@ export function labelOf({ name, unit }) {
 
 /** "lights_per_tile" reads "Lights per tile". @param {string} name */
 export function wordsOf(name) {
-  const words = name.replaceAll('_', ' ');
+  const words = name
+    .split('_')
+    .map((word) => (ABBREVIATIONS.has(word) ? word.toUpperCase() : word))
+    .join(' ');
   return words.charAt(0).toUpperCase() + words.slice(1);
 }

@@ -34,7 +34,7 @@ export class ViewTab {
     this.controls.replaceChildren();
     const picture = makeSection(this.controls, 'Picture');
     const sizes = Object.fromEntries(Object.keys(RENDER_SIZES).map((name) => [wordsOf(name), name]));
-    const size = picture.add(view, 'sizeChoice', sizes).name('Render size, at most');
+    const size = picture.add(view, 'sizeChoice', sizes).name('Render size');
     size.onChange((/** @type {string} */ choice) => view.chooseSize(choice));
     // The stage decides the size; the rest of the group is the user's.
     const rows = app.parameters('view').filter(({ name }) => name !== 'width' && name !== 'height');

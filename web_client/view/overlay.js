@@ -36,6 +36,8 @@ export class Overlay extends EventTarget {
     this.handleLayer = svg.appendChild(element('g', {}));
     /** @type {CameraPose | null} */
     this.pose = null;
+    /** Of the shown picture, which is stretched a little to fill the stage. */
+    this.aspect = 16 / 9;
     /** @type {{id: number, name: string, type: string, enabled: boolean, color: number[], position: Vector}[]} */
     this.lights = [];
     /** @type {number | null} */
@@ -47,10 +49,6 @@ export class Overlay extends EventTarget {
     /** @type {Map<number, SVGElement>} */
     this.lightIcons = new Map();
     this.handleParts = this.#makeHandle();
-  }
-
-  get aspect() {
-    return this.svg.clientWidth / Math.max(this.svg.clientHeight, 1);
   }
 
   /** Places everything anew. Cheap: a few attributes for each light. */
