@@ -77,8 +77,8 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
                 decide(plan, (enum effect)i, true, "forced");
 }
 
-void effects_write_defines(uint32_t bits, uint32_t mask, uint32_t texture_classes, char *out_text,
-                           size_t out_size)
+void effects_write_defines(uint32_t bits, uint32_t mask, const struct resident *resident,
+                           char *out_text, size_t out_size)
 {
     size_t used = 0;
     out_text[0] = '\0';
@@ -87,8 +87,11 @@ void effects_write_defines(uint32_t bits, uint32_t mask, uint32_t texture_classe
             continue;
         int written;
         if (i == EFFECT_TEXTURES)
-            written =
-                snprintf(out_text + used, out_size - used, "TEXTURE_CLASSES %u\n", texture_classes);
+            written = snprintf(out_text + used, out_size - used,
+                               "COLOR_CLASSES %u\nDATA_CLASSES %u\nTEXTURE_TRANSFORMS %d\n",
+                               resident->texture_spaces[TEXTURE_SPACE_COLOR].class_count,
+                               resident->texture_spaces[TEXTURE_SPACE_DATA].class_count,
+                               resident->texture_transforms);
         else
             written = snprintf(out_text + used, out_size - used, "%s %d\n", effects[i].define,
                                (bits & EFFECT_BIT(i)) != 0);

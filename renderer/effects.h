@@ -33,9 +33,9 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
 
 const char *effect_name(enum effect effect);
 
-// Writes "NAME 0|1" lines for the effects in `mask`, and the number of texture classes if
+// Writes "NAME 0|1" lines for the effects in `mask`, and what kinds of textures there are if
 // EFFECT_TEXTURES is among them: the defines of a shader permutation.
-void effects_write_defines(uint32_t bits, uint32_t mask, uint32_t texture_classes, char *out_text,
-                           size_t out_size);
+void effects_write_defines(uint32_t bits, uint32_t mask, const struct resident *resident,
+                           char *out_text, size_t out_size);
 
 #endif

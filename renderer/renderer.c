@@ -1,6 +1,7 @@
 #include "renderer/renderer.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,7 @@ struct renderer {
     struct scene *scene;
     uint64_t scene_number; // tells scenes apart that were loaded one after another
     uint32_t view_count;
-    float anisotropy; // now set in the texture arrays
+    struct view *views[RENDERER_MAX_VIEWS]; // the first view_count
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
 };
@@ -95,12 +96,13 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
         if (!resident)
             return false;
     }
+    for (uint32_t i = 0; i < renderer->view_count; i++)
+        view_release_cascades(renderer->views[i]);
     ray_scene_destroy(&renderer->ray_scene);
     resident_destroy(&renderer->resident);
     renderer->resident = resident;
     renderer->scene = scene;
     renderer->scene_number++;
-    renderer->anisotropy = 0.0f;
     return true;
 }
 
@@ -110,14 +112,17 @@ struct view *renderer_view_create(struct renderer *renderer)
         return NULL;
     struct view *view = view_create(renderer->gpu);
     if (view)
-        renderer->view_count++;
+        renderer->views[renderer->view_count++] = view;
     return view;
 }
 
 void renderer_view_destroy(struct renderer *renderer, struct view **view)
 {
-    if (*view)
-        renderer->view_count--;
+    for (uint32_t i = 0; i < renderer->view_count; i++)
+        if (renderer->views[i] == *view) {
+            renderer->views[i] = renderer->views[--renderer->view_count];
+            break;
+        }
     view_destroy(view);
 }
 
@@ -182,28 +187,20 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
                    (resident->counts.lights + 31) / 32, frame->view->cascade_count},
            sizeof(uvec4));
     memcpy(block->options,
-           (uvec4){(uint32_t)params->debug_view, (uint32_t)settings->shading_model,
-                   frame->quality->shadow_taps, (uint32_t)settings->tonemap},
+           (uvec4){(uint32_t)params->debug_view, 0, frame->quality->shadow_taps,
+                   (uint32_t)settings->tonemap},
            sizeof(uvec4));
     bool fixed = settings->exposure_mode == EXPOSURE_FIXED;
     block->display[0] = fixed ? exp2f(settings->exposure_ev) : 0.0f;
     block->display[1] = settings->gamma;
     block->display[2] = exp2f(settings->exposure_ev);
+    block->display[3] = settings->shading_model == SHADING_MODEL_BLINN_PHONG ? 1.0f : 0.0f;
     block->environment[0] = frame->resident->scene->environment.intensity;
     block->environment[1] = frame->resident->scene->environment.rotation_rad;
+    block->textures[0] = frame->quality->texture_anisotropy;
 }
 
-static void set_anisotropy(struct renderer *renderer, float wanted)
-{
-    float anisotropy = fminf(wanted, gpu_get_info(renderer->gpu)->max_anisotropy);
-    if (renderer->anisotropy == anisotropy)
-        return;
-    for (uint32_t i = 0; i < renderer->resident->texture_class_count; i++)
-        gpu_texture_set_anisotropy(renderer->resident->texture_classes[i], anisotropy);
-    renderer->anisotropy = anisotropy;
-}
-
-static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)
+static bool draw_frame(struct frame *frame, struct error *out_error)
 {
     struct view *view = frame->view;
     if (!view_prepare(view, frame->resident, frame->params, frame->plan.bits))
@@ -215,11 +212,12 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     frame->tiles_y = (view->height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
     struct frame_block block;
     fill_frame_block(frame, &block);
-    gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     shadow_map_place_cascades(frame);
+    shadow_map_relate_cascades(frame, &block);
+    gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     if (frame->visibility_changed)
-        draw_list_fill(&view->draws, frame->resident, block.clip_from_world);
-    set_anisotropy(renderer, frame->quality->texture_anisotropy);
+        draw_list_fill(&view->draws, frame->resident, block.clip_from_world,
+                       frame->params->camera.eye);
     resident_bind(frame->resident);
     view_bind(view);
     return passes_execute(frame, out_error);
@@ -270,7 +268,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .visibility_changed = !same_scene || !same_surfaces(view, params, &revisions),
     };
     effects_plan(&frame.plan, resident, params);
-    if (!draw_frame(renderer, &frame, out_error)) {
+    if (!draw_frame(&frame, out_error)) {
         view->drawn = false;
         return RENDER_FAILED;
     }
@@ -393,7 +391,7 @@ bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, 
     camera_frame_init(&frame, camera);
     float direction[3];
     camera_ray(&frame, width, height, x + 0.5f, y + 0.5f, direction);
-    return ray_scene_intersect(renderer->ray_scene, camera->eye, direction, INFINITY, out_hit);
+    return ray_scene_intersect(renderer->ray_scene, camera->eye, direction, FLT_MAX, out_hit);
 }
 
 uint32_t renderer_poll_shaders(struct renderer *renderer, struct error *out_error)

@@ -37,7 +37,6 @@ struct renderer_info {
     char egl_device[128];
     bool software;   // llvmpipe or another CPU rasteriser
     bool gpu_timers; // timer queries can be trusted for compute dispatches
-    float max_anisotropy;
     uint32_t max_texture_edge;
 };
 

@@ -18,15 +18,15 @@ const char *const quality_names[QUALITY_COUNT] = {"draft", "interactive", "high"
 const struct quality_level quality_levels[QUALITY_COUNT] = {
     [QUALITY_DRAFT] = {.resolution_scale = 0.5f, .texture_anisotropy = 1.0f, .shadow_taps = 1},
     [QUALITY_INTERACTIVE] = {.resolution_scale = 1.0f,
-                             .texture_anisotropy = 2.0f,
+                             .texture_anisotropy = 1.0f,
                              .shadow_taps = 4,
                              .shadow_cascades = 1},
     [QUALITY_HIGH] = {.resolution_scale = 1.0f,
-                      .texture_anisotropy = 8.0f,
+                      .texture_anisotropy = 4.0f,
                       .shadow_taps = 16,
                       .shadow_cascades = 2},
     [QUALITY_FINAL] = {.resolution_scale = 1.0f,
-                       .texture_anisotropy = 16.0f,
+                       .texture_anisotropy = 8.0f,
                        .shadow_taps = 32,
                        .shadow_cascades = 3},
 };

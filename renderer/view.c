@@ -15,7 +15,7 @@ struct view *view_create(struct gpu *gpu)
                                        sizeof(vec4) + HISTOGRAM_BINS * sizeof(uint32_t), NULL);
     view->shadow_views = gpu_buffer_create(
         gpu, "view.shadow_views", GPU_BUFFER_STATIC,
-        (MAX_SHADOW_LAYERS + MAX_VIEW_SHADOW_LAYERS) * sizeof(struct shadow_view_block), NULL);
+        (MAX_SHADOW_LAYERS + MAX_CASCADES) * sizeof(struct shadow_view_block), NULL);
     if (!view->timer || !view->frame_block || !view->exposure || !view->shadow_views)
         view_destroy(&view);
     return view;
@@ -35,12 +35,12 @@ static void destroy_sized_targets(struct view *view)
     view->height = 0;
 }
 
-static void destroy_cascades(struct view *view)
+void view_release_cascades(struct view *view)
 {
-    for (uint32_t i = 0; i < MAX_VIEW_SHADOW_LAYERS; i++)
-        gpu_framebuffer_destroy(&view->cascade_framebuffers[i]);
-    gpu_texture_destroy(&view->cascade_map);
+    for (uint32_t i = 0; i < view->cascade_count; i++)
+        shadow_map_give_cascade(view->cascade_owner, view->cascade_numbers[i]);
     view->cascade_count = 0;
+    view->cascade_owner = NULL;
 }
 
 void view_destroy(struct view **view_slot)
@@ -50,7 +50,7 @@ void view_destroy(struct view **view_slot)
     if (!view)
         return;
     destroy_sized_targets(view);
-    destroy_cascades(view);
+    view_release_cascades(view);
     draw_list_finish(&view->draws);
     draw_list_finish(&view->shadow_draws);
     gpu_buffer_destroy(&view->frame_block);
@@ -109,30 +109,18 @@ static bool create_sized_targets(struct view *view, uint32_t width, uint32_t hei
     return view->framebuffer && view->list_framebuffer && view->gbuffer && view->radiance;
 }
 
-static bool prepare_cascades(struct view *view, uint32_t wanted)
+static bool prepare_cascades(struct view *view, struct shadow_map *map, uint32_t wanted)
 {
-    if (view->cascade_count == wanted)
+    if (view->cascade_count == wanted && view->cascade_owner == map)
         return true;
-    destroy_cascades(view);
-    if (wanted == 0)
-        return true;
-    view->cascade_map = gpu_texture_create(view->gpu, &(struct gpu_texture_params){
-                                                          .label = "shadow_map.cascades",
-                                                          .format = GPU_FORMAT_DEPTH32F,
-                                                          .width = SHADOW_MAP_EDGE,
-                                                          .height = SHADOW_MAP_EDGE,
-                                                          .layers = wanted,
-                                                          .filter = GPU_FILTER_SHADOW_COMPARE,
-                                                      });
-    if (!view->cascade_map)
-        return false;
-    view->cascade_count = wanted;
-    for (uint32_t i = 0; i < wanted; i++) {
-        view->cascade_stale[i] = true;
-        view->cascade_framebuffers[i] =
-            gpu_framebuffer_create(view->gpu, "shadow_map.cascades", NULL, view->cascade_map, i);
-        if (!view->cascade_framebuffers[i])
+    view_release_cascades(view);
+    view->cascade_owner = map;
+    while (view->cascade_count < wanted) {
+        uint32_t number = shadow_map_take_cascade(map);
+        if (number == UINT32_MAX)
             return false;
+        view->cascade_stale[view->cascade_count] = true;
+        view->cascade_numbers[view->cascade_count++] = number;
     }
     return true;
 }
@@ -160,8 +148,8 @@ bool view_prepare(struct view *view, const struct resident *resident,
         gpu_buffer_ensure(gpu, &view->output, "view.output", GPU_BUFFER_STATIC, output_bytes) &&
         gpu_buffer_ensure(gpu, &view->ring[view->ring_next].pixels, "readback", GPU_BUFFER_READBACK,
                           output_bytes) &&
-        draw_list_reserve(&view->draws, gpu, resident->counts.instances) &&
-        draw_list_reserve(&view->shadow_draws, gpu, resident->counts.instances);
+        draw_list_reserve(&view->draws, resident) &&
+        draw_list_reserve(&view->shadow_draws, resident);
     if (effect_bits & EFFECT_BIT(EFFECT_LIGHT_TILES)) {
         size_t tiles = (size_t)((width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE) *
                        ((height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE);
@@ -180,7 +168,8 @@ bool view_prepare(struct view *view, const struct resident *resident,
     }
     bool cascades =
         (effect_bits & EFFECT_BIT(EFFECT_SHADOWS)) && resident->directional_light != NO_SHADOW;
-    return done && prepare_cascades(view, cascades ? quality->shadow_cascades : 0);
+    return done &&
+           prepare_cascades(view, resident->shadow_map, cascades ? quality->shadow_cascades : 0);
 }
 
 void view_bind(const struct view *view)
@@ -196,5 +185,4 @@ void view_bind(const struct view *view)
     gpu_bind_storage(gpu, BIND_FRAGMENTS, view->fragments);
     gpu_bind_texture(gpu, UNIT_IDS, view->ids);
     gpu_bind_texture(gpu, UNIT_DEPTH, view->depth);
-    gpu_bind_texture(gpu, UNIT_VIEW_SHADOW_MAP, view->cascade_map);
 }

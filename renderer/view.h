@@ -41,12 +41,13 @@ struct view {
 
     struct gpu_buffer *shadow_views; // the scene's and then this view's cascades
     uint64_t shadow_revision_seen;
+    uint64_t shadow_epoch_seen;
+    struct shadow_map *cascade_owner; // where the cascades below were taken from
     uint32_t cascade_count;
-    float cascade_center[MAX_VIEW_SHADOW_LAYERS][3];
-    bool cascade_stale[MAX_VIEW_SHADOW_LAYERS];
-    struct shadow_view_block cascades[MAX_VIEW_SHADOW_LAYERS];
-    struct gpu_texture *cascade_map;
-    struct gpu_framebuffer *cascade_framebuffers[MAX_VIEW_SHADOW_LAYERS];
+    uint32_t cascade_numbers[MAX_CASCADES];
+    float cascade_center[MAX_CASCADES][3];
+    bool cascade_stale[MAX_CASCADES];
+    struct shadow_view_block cascades[MAX_CASCADES];
 
     struct ring_frame ring[RENDERER_FRAMES_IN_RING];
     uint32_t ring_next;   // where the next frame goes
@@ -75,6 +76,9 @@ bool view_prepare(struct view *view, const struct resident *resident,
 // Bytes of one output picture, and where its planes lie.
 size_t view_output_layout(const struct frame_params *params, size_t out_offsets[3],
                           uint32_t out_pitches[3]);
+
+// Gives the view's cascades back to the shadow map they came from; before that goes.
+void view_release_cascades(struct view *view);
 
 void view_bind(const struct view *view);
 

@@ -33,7 +33,6 @@ int cli_info(int argc, char **argv)
     printf("GL version       %s\n", info->gl_version);
     printf("EGL              %s\n", info->egl_device);
     printf("pass timers      %s\n", info->gpu_timers ? "GPU timestamps" : "clock");
-    printf("anisotropy       up to %g\n", (double)info->max_anisotropy);
     printf("texture edge     up to %u\n", info->max_texture_edge);
     for (uint32_t i = 0; scene_builtin_name(i); i++)
         printf("%s %-22s %s\n", i == 0 ? "built-in scenes " : "                ",

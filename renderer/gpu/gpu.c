@@ -36,10 +36,6 @@ static void read_info(struct gpu *gpu)
              (const char *)glGetString(GL_VERSION));
     info->software = strstr(info->gl_renderer, "llvmpipe") ||
                      strstr(info->gl_renderer, "softpipe") || strstr(info->gl_renderer, "swr");
-    info->max_anisotropy = 1.0f;
-    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic") ||
-        epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic"))
-        glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &info->max_anisotropy);
     GLint edge = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &edge);
     info->max_texture_edge = (uint32_t)edge;
@@ -94,6 +90,7 @@ struct gpu *gpu_create(const char *choice, const char *shader_dir, struct error 
     // Reversed Z in [0, 1]: floating-point depth stays precise far away.
     glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
+    glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     gpu->info.gpu_timers = !gpu->info.software && gpu_timer_probe(gpu);
     return gpu;
@@ -231,24 +228,25 @@ void gpu_barrier(struct gpu *gpu)
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
-void gpu_draw_indirect(struct gpu *gpu, const struct gpu_program *program,
-                       const struct gpu_geometry *geometry, const struct gpu_buffer *draws,
-                       uint32_t first, uint32_t count, enum gpu_cull cull)
+void gpu_draw_indirect(struct gpu *gpu, const struct gpu_draw_params *params)
 {
-    if (count == 0)
+    if (params->count == 0)
         return;
-    use_program(gpu, program);
-    glBindVertexArray(*(const GLuint *)geometry);
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, gpu_buffer_name(draws));
-    if (cull == GPU_CULL_NONE) {
+    use_program(gpu, params->program);
+    GLuint vertex_array = *(const GLuint *)params->geometry;
+    glVertexArrayVertexBuffer(vertex_array, 1, gpu_buffer_name(params->records), 0,
+                              sizeof(struct gpu_draw_record));
+    glBindVertexArray(vertex_array);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, gpu_buffer_name(params->draws));
+    if (params->cull == GPU_CULL_NONE) {
         glDisable(GL_CULL_FACE);
     } else {
         glEnable(GL_CULL_FACE);
-        glCullFace(cull == GPU_CULL_BACK ? GL_BACK : GL_FRONT);
+        glCullFace(params->cull == GPU_CULL_BACK ? GL_BACK : GL_FRONT);
     }
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
-                                (const void *)(uintptr_t)(first * sizeof(struct gpu_draw)),
-                                (GLsizei)count, 0);
+    size_t offset_bytes = params->first * sizeof(struct gpu_draw);
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, (const void *)offset_bytes,
+                                (GLsizei)params->count, 0);
 }
 
 void gpu_set_uint(struct gpu *gpu, const struct gpu_program *program, uint32_t location,
@@ -263,9 +261,7 @@ struct gpu_geometry {
 };
 
 struct gpu_geometry *gpu_geometry_create(struct gpu *gpu, const struct gpu_buffer *vertices,
-                                         uint32_t stride_bytes, uint32_t uv_offset_bytes,
-                                         const struct gpu_buffer *indices,
-                                         const struct gpu_buffer *instance_ids)
+                                         const struct gpu_buffer *indices)
 {
     (void)gpu;
     struct gpu_geometry *geometry = calloc(1, sizeof(*geometry));
@@ -274,18 +270,26 @@ struct gpu_geometry *gpu_geometry_create(struct gpu *gpu, const struct gpu_buffe
     glCreateVertexArrays(1, &geometry->name);
     GLuint name = geometry->name;
     glObjectLabel(GL_VERTEX_ARRAY, name, -1, "geometry");
-    glVertexArrayVertexBuffer(name, 0, gpu_buffer_name(vertices), 0, (GLsizei)stride_bytes);
-    glVertexArrayVertexBuffer(name, 1, gpu_buffer_name(instance_ids), 0, sizeof(uint32_t));
+    glVertexArrayVertexBuffer(name, 0, gpu_buffer_name(vertices), 0, sizeof(struct raster_vertex));
     glVertexArrayBindingDivisor(name, 1, 1);
     glVertexArrayElementBuffer(name, gpu_buffer_name(indices));
-    glVertexArrayAttribFormat(name, 0, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(name, 0, 0);
-    glVertexArrayAttribIFormat(name, 1, 1, GL_UNSIGNED_INT, 0);
-    glVertexArrayAttribBinding(name, 1, 1);
-    glVertexArrayAttribFormat(name, 2, 4, GL_FLOAT, GL_FALSE, uv_offset_bytes);
-    glVertexArrayAttribBinding(name, 2, 0);
-    for (GLuint attribute = 0; attribute < 3; attribute++)
+    glVertexArrayAttribFormat(name, 0, 3, GL_FLOAT, GL_FALSE,
+                              offsetof(struct raster_vertex, position));
+    glVertexArrayAttribFormat(name, 1, 4, GL_FLOAT, GL_FALSE, offsetof(struct raster_vertex, uv));
+    for (GLuint row = 0; row < 3; row++)
+        glVertexArrayAttribFormat(name, 2 + row, 4, GL_FLOAT, GL_FALSE,
+                                  row * (GLuint)sizeof(float[4]));
+    glVertexArrayAttribIFormat(name, 5, 4, GL_UNSIGNED_INT,
+                               offsetof(struct gpu_draw_record, numbers));
+    glVertexArrayAttribFormat(name, 6, 1, GL_FLOAT, GL_FALSE,
+                              offsetof(struct raster_vertex, alpha));
+    glVertexArrayAttribIFormat(name, 7, 1, GL_UNSIGNED_INT,
+                               offsetof(struct raster_vertex, triangle));
+    for (GLuint attribute = 0; attribute < 8; attribute++) {
+        bool per_draw = attribute >= 2 && attribute <= 5;
+        glVertexArrayAttribBinding(name, attribute, per_draw ? 1 : 0);
         glEnableVertexArrayAttrib(name, attribute);
+    }
     return geometry;
 }
 

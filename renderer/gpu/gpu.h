@@ -64,7 +64,7 @@ struct gpu_raster_params {
 void gpu_begin_raster(struct gpu *gpu, const struct gpu_raster_params *params);
 void gpu_end_raster(struct gpu *gpu);
 
-// As the GL's DrawElementsIndirectCommand; base_instance reaches shaders as attribute 1.
+// As the GL's DrawElementsIndirectCommand; base_instance picks the draw's record.
 struct gpu_draw {
     uint32_t index_count;
     uint32_t instance_count;
@@ -73,20 +73,40 @@ struct gpu_draw {
     uint32_t base_instance;
 };
 
-// What draws read: vertices of `stride_bytes` whose position, 3 floats, comes first (attribute 0);
-// 32-bit indices; instance ids 0, 1, 2 ... (attribute 1, once per instance); texture coordinates
-// (attribute 2: 4 floats at uv_offset_bytes).
+// What each draw hands to its vertices as attributes: the rows of world_from_local (attributes 2 to
+// 4) and four numbers of the drawer's choice (attribute 5). Attributes that change once per draw
+// cost a software renderer far less than look-ups in a storage buffer.
+struct gpu_draw_record {
+    float world_rows[3][4];
+    uint32_t numbers[4];
+};
+
+// A vertex as draws read it: attributes 0 (position), 1 (both sets of texture coordinates), 6
+// (alpha) and 7 (the number that the vertex gives to triangles that begin with it).
+struct raster_vertex {
+    float position[3];
+    float uv[2][2];
+    float alpha;
+    uint32_t triangle;
+};
+
+// `vertices` holds raster_vertex, `indices` 32-bit numbers.
 struct gpu_geometry;
 struct gpu_geometry *gpu_geometry_create(struct gpu *gpu, const struct gpu_buffer *vertices,
-                                         uint32_t stride_bytes, uint32_t uv_offset_bytes,
-                                         const struct gpu_buffer *indices,
-                                         const struct gpu_buffer *instance_ids);
+                                         const struct gpu_buffer *indices);
 void gpu_geometry_destroy(struct gpu_geometry **geometry);
 
-// Draws `count` commands of `draws`, starting with number `first`.
-void gpu_draw_indirect(struct gpu *gpu, const struct gpu_program *program,
-                       const struct gpu_geometry *geometry, const struct gpu_buffer *draws,
-                       uint32_t first, uint32_t count, enum gpu_cull cull);
+// Draws `count` commands of `draws`, starting with number `first`. `records` holds gpu_draw_record.
+struct gpu_draw_params {
+    const struct gpu_program *program;
+    const struct gpu_geometry *geometry;
+    const struct gpu_buffer *draws;
+    const struct gpu_buffer *records;
+    uint32_t first;
+    uint32_t count;
+    enum gpu_cull cull;
+};
+void gpu_draw_indirect(struct gpu *gpu, const struct gpu_draw_params *params);
 
 // Sets one uint uniform of a program, by explicit location.
 void gpu_set_uint(struct gpu *gpu, const struct gpu_program *program, uint32_t location,

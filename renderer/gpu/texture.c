@@ -32,7 +32,8 @@ static void set_sampling(GLuint name, const struct gpu_texture_params *params)
     bool linear = params->filter != GPU_FILTER_NEAREST;
     GLint minify = linear ? GL_LINEAR : GL_NEAREST;
     if (linear && params->levels > 1)
-        minify = GL_LINEAR_MIPMAP_LINEAR;
+        minify = params->filter == GPU_FILTER_LINEAR_NEAREST_LEVEL ? GL_LINEAR_MIPMAP_NEAREST
+                                                                   : GL_LINEAR_MIPMAP_LINEAR;
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, minify);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_WRAP_S, params->repeat_u ? GL_REPEAT : GL_CLAMP_TO_EDGE);
@@ -76,7 +77,6 @@ struct gpu_texture *gpu_texture_create(struct gpu *gpu, const struct gpu_texture
     }
     glObjectLabel(GL_TEXTURE, texture->name, -1, params->label);
     set_sampling(texture->name, &texture->params);
-    gpu_texture_set_anisotropy(texture, params->anisotropy);
     return texture;
 }
 
@@ -110,14 +110,6 @@ void gpu_texture_write(struct gpu_texture *texture, uint32_t level, uint32_t lay
 void gpu_texture_generate_levels(struct gpu_texture *texture)
 {
     glGenerateTextureMipmap(texture->name);
-}
-
-void gpu_texture_set_anisotropy(struct gpu_texture *texture, float anisotropy)
-{
-    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic") ||
-        epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic"))
-        glTextureParameterf(texture->name, GL_TEXTURE_MAX_ANISOTROPY,
-                            anisotropy < 1.0f ? 1.0f : anisotropy);
 }
 
 uint32_t gpu_texture_name(const struct gpu_texture *texture)

@@ -14,8 +14,9 @@ enum gpu_format {
 
 enum gpu_filter {
     GPU_FILTER_NEAREST,
-    GPU_FILTER_LINEAR,        // and mipmaps where there are any
-    GPU_FILTER_SHADOW_COMPARE // linear, comparing reference >= depth (reversed Z)
+    GPU_FILTER_LINEAR,               // and between mipmaps where there are any
+    GPU_FILTER_LINEAR_NEAREST_LEVEL, // linear within the nearest mipmap: half the texels
+    GPU_FILTER_SHADOW_COMPARE        // linear, comparing reference >= depth (reversed Z)
 };
 
 struct gpu_texture_params {
@@ -28,7 +29,6 @@ struct gpu_texture_params {
     enum gpu_filter filter;
     bool repeat_u; // else clamp to edge
     bool repeat_v;
-    float anisotropy; // 0 or 1: none
 };
 
 // NULL when GL is out of memory.
@@ -40,7 +40,6 @@ void gpu_texture_destroy(struct gpu_texture **texture);
 void gpu_texture_write(struct gpu_texture *texture, uint32_t level, uint32_t layer,
                        const void *pixels);
 void gpu_texture_generate_levels(struct gpu_texture *texture);
-void gpu_texture_set_anisotropy(struct gpu_texture *texture, float anisotropy);
 uint32_t gpu_texture_name(const struct gpu_texture *texture);
 uint64_t gpu_texture_size_bytes(const struct gpu_texture *texture);
 uint32_t gpu_texture_layers(const struct gpu_texture *texture);

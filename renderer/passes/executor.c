@@ -61,8 +61,8 @@ const struct gpu_program *pass_program(const struct frame *frame, const struct p
                                        struct error *out_error)
 {
     char defines[512];
-    effects_write_defines(frame->plan.bits, pass->effects_used,
-                          frame->resident->texture_class_count, defines, sizeof(defines));
+    effects_write_defines(frame->plan.bits, pass->effects_used, frame->resident, defines,
+                          sizeof(defines));
     size_t used = 0;
     while (defines[used])
         used++;

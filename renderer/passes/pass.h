@@ -83,6 +83,10 @@ const struct gpu_program *pass_program(const struct frame *frame, const struct p
 // Works out which cascades of the sun must be drawn; before the passes run.
 void shadow_map_place_cascades(struct frame *frame);
 
+// Tells the shaders where the cascades lie in the map of the whole scene.
+struct frame_block;
+void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *block);
+
 // Groups of GROUP_EDGE^2 over the rendered pixels.
 void pass_dispatch_pixels(const struct frame *frame, const struct gpu_program *program);
 

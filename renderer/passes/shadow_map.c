@@ -53,20 +53,52 @@ static bool any_stale(const struct frame *frame)
     return false;
 }
 
-// Called once per frame before the passes: works out which cascades must be drawn.
 void shadow_map_place_cascades(struct frame *frame)
 {
     struct view *view = frame->view;
-    if (view->shadow_revision_seen != frame->resident->shadow_revision)
-        for (uint32_t i = 0; i < view->cascade_count; i++)
-            view->cascade_stale[i] = true;
+    struct resident *resident = frame->resident;
+    uint64_t epoch = shadow_map_epoch(resident->shadow_map);
+    bool lost = epoch != resident->shadow_epoch_seen;
+    if (lost)
+        memset(resident->shadow_stale, true, sizeof(resident->shadow_stale));
+    resident->shadow_epoch_seen = epoch;
+    if (view->shadow_revision_seen != resident->shadow_revision || view->shadow_epoch_seen != epoch)
+        memset(view->cascade_stale, true, sizeof(view->cascade_stale));
+    view->shadow_revision_seen = resident->shadow_revision;
+    view->shadow_epoch_seen = epoch;
     for (uint32_t i = 0; i < view->cascade_count; i++)
         place_cascade(frame, i);
-    view->shadow_revision_seen = frame->resident->shadow_revision;
-    gpu_buffer_write(view->shadow_views, 0, sizeof(frame->resident->shadow_views),
-                     frame->resident->shadow_views);
-    gpu_buffer_write(view->shadow_views, sizeof(frame->resident->shadow_views),
-                     sizeof(view->cascades), view->cascades);
+    gpu_buffer_write(view->shadow_views, 0, sizeof(resident->shadow_views), resident->shadow_views);
+    gpu_buffer_write(view->shadow_views, sizeof(resident->shadow_views), sizeof(view->cascades),
+                     view->cascades);
+}
+
+// Both are orthographic along the same axes, so that one is a scale and an offset of the other.
+void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *block)
+{
+    const struct view *view = frame->view;
+    uint32_t sun = frame->resident->sun_shadow_view;
+    block->options[1] = sun;
+    for (uint32_t i = 0; i < view->cascade_count; i++) {
+        mat4 scene, cascade;
+        memcpy(scene, frame->resident->shadow_views[sun].clip_from_world, sizeof(scene));
+        memcpy(cascade, view->cascades[i].clip_from_world, sizeof(cascade));
+        for (int row = 0; row < 3; row++) {
+            // The rows are parallel: compare them where the scene's is largest.
+            int column = 0;
+            for (int c = 1; c < 3; c++)
+                if (fabsf(scene[c][row]) > fabsf(scene[column][row]))
+                    column = c;
+            float scale = cascade[column][row] / scene[column][row];
+            float offset = cascade[3][row] - scale * scene[3][row];
+            // From clip space to uv: u = 0.5 + 0.5 x, v = 0.5 - 0.5 y; depth is z itself.
+            block->cascade_scales[i][row] = scale;
+            block->cascade_offsets[i][row] =
+                row == 2 ? offset : 0.5f - 0.5f * scale + (row == 0 ? 0.5f : -0.5f) * offset;
+        }
+        block->cascade_scales[i][3] =
+            (float)shadow_map_cascade_layer(frame->resident->shadow_map, view->cascade_numbers[i]);
+    }
 }
 
 static const char *shadow_map_skip_reason(const struct frame *frame)
@@ -81,7 +113,7 @@ static bool draw_layer(struct frame *frame, const struct pass *pass,
                        const mat4 clip_from_world, struct error *out_error)
 {
     struct draw_list *draws = &frame->view->shadow_draws;
-    draw_list_fill(draws, frame->resident, clip_from_world);
+    draw_list_fill(draws, frame->resident, clip_from_world, NULL);
     gpu_begin_raster(frame->gpu, &(struct gpu_raster_params){
                                      .framebuffer = framebuffer,
                                      .width = SHADOW_MAP_EDGE,
@@ -117,7 +149,7 @@ static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct 
     for (uint32_t i = 0; i < resident->counts.shadow_layers; i++) {
         if (!resident->shadow_stale[i])
             continue;
-        if (!draw_layer(frame, pass, resident->shadow_framebuffers[i], i,
+        if (!draw_layer(frame, pass, shadow_map_lamp_framebuffer(resident->shadow_map, i), i,
                         resident->shadow_views[i].clip_from_world, out_error))
             return false;
         resident->shadow_stale[i] = false;
@@ -125,8 +157,10 @@ static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct 
     for (uint32_t i = 0; i < view->cascade_count; i++) {
         if (!view->cascade_stale[i])
             continue;
-        if (!draw_layer(frame, pass, view->cascade_framebuffers[i], MAX_SHADOW_LAYERS + i,
-                        view->cascades[i].clip_from_world, out_error))
+        if (!draw_layer(
+                frame, pass,
+                shadow_map_cascade_framebuffer(resident->shadow_map, view->cascade_numbers[i]),
+                MAX_SHADOW_LAYERS + i, view->cascades[i].clip_from_world, out_error))
             return false;
         view->cascade_stale[i] = false;
     }

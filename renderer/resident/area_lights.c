@@ -15,7 +15,7 @@ static void emitted_radiance(const struct resident *resident, const struct scene
     for (int c = 0; c < 3; c++) {
         out_radiance[c] = material->emissive[c] * material->emissive_strength;
         if (image < resident->scene->image_count)
-            out_radiance[c] *= resident->color_places[image].mean[c];
+            out_radiance[c] *= resident->texture_spaces[TEXTURE_SPACE_COLOR].places[image].mean[c];
     }
 }
 

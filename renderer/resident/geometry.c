@@ -25,19 +25,6 @@ static uint32_t count_instances(const struct scene *scene)
     return count;
 }
 
-static bool upload_instance_ids(struct resident *resident, uint32_t count)
-{
-    uint32_t *ids = malloc((count ? count : 1) * sizeof(*ids));
-    if (!ids)
-        return false;
-    for (uint32_t i = 0; i < count; i++)
-        ids[i] = i;
-    bool done = upload(resident, &resident->instance_ids, "geometry.instance_ids",
-                       count * sizeof(*ids), ids);
-    free(ids);
-    return done;
-}
-
 // Gives each instance a run of visibility ids that starts at a block boundary, and tells for each
 // block whose it is.
 static bool upload_id_blocks(struct resident *resident)
@@ -54,9 +41,11 @@ static bool upload_id_blocks(struct resident *resident)
     uint32_t at = 0;
     for (uint32_t i = 0; i < resident->counts.instances; i++) {
         uint32_t triangles = resident->instances[i].index_count / 3;
+        resident->instances[i].first_id = at << ID_BLOCK_BITS;
         for (uint32_t j = 0; j < (triangles + block_size - 1) / block_size; j++)
             owners[at++] = i;
     }
+    resident->cluster_count = at;
     bool done = upload(resident, &resident->id_blocks, "geometry.id_blocks",
                        block_count * sizeof(*owners), owners);
     free(owners);
@@ -88,17 +77,13 @@ bool resident_upload_geometry(struct resident *resident)
         }
     }
     resident->drawable = scene->index_count > 0 && count > 0;
-    gpu_geometry_destroy(&resident->geometry);
     if (!upload(resident, &resident->vertices, "geometry.vertices",
                 scene->vertex_count * sizeof(struct scene_vertex), scene->vertices) ||
         !upload(resident, &resident->indices, "geometry.indices",
                 scene->index_count * sizeof(uint32_t), scene->indices) ||
-        !upload_instance_ids(resident, count) || !upload_id_blocks(resident))
+        !upload_id_blocks(resident))
         return false;
-    resident->geometry = gpu_geometry_create(
-        resident->gpu, resident->vertices, sizeof(struct scene_vertex),
-        (uint32_t)offsetof(struct scene_vertex, uv), resident->indices, resident->instance_ids);
-    return resident->geometry != NULL;
+    return resident_build_clusters(resident) && resident_upload_raster_mesh(resident);
 }
 
 // The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales too.
@@ -137,7 +122,7 @@ static uint8_t group_of(const struct scene_material *material, bool mirrored)
 }
 
 static void place_instance(struct resident *resident, struct resident_instance *instance,
-                           struct instance_block *block, uint32_t first_id)
+                           struct instance_block *block)
 {
     const struct scene *scene = resident->scene;
     const struct scene_node *node = &scene->nodes[instance->node];
@@ -145,12 +130,18 @@ static void place_instance(struct resident *resident, struct resident_instance *
     fill_instance_block(block, node->world_from_local);
     block->info[0] = instance->index_first;
     block->info[1] = primitive->material;
-    block->info[2] = first_id;
+    block->info[2] = instance->first_id;
     block->source[0] = instance->node;
     block->source[1] = instance->primitive;
     instance->visible = node->world_visible && instance->index_count > 0;
     instance->group =
         group_of(&scene->materials[primitive->material], (block->info[3] & INSTANCE_MIRRORED) != 0);
+    instance->scale = 0.0f;
+    for (int column = 0; column < 3; column++)
+        instance->scale =
+            fmaxf(instance->scale, glm_vec3_norm2((float *)node->world_from_local + 4 * column));
+    // Axes of a sheared placement can add up.
+    instance->scale = sqrtf(3.0f * instance->scale);
     double low[3], high[3];
     placement_transform_box(node->world_from_local, primitive->bounds_min, primitive->bounds_max,
                             low, high);
@@ -176,13 +167,8 @@ bool resident_upload_instances(struct resident *resident)
         resident->bounds_min[axis] = INFINITY;
         resident->bounds_max[axis] = -INFINITY;
     }
-    const uint32_t block_size = 1u << ID_BLOCK_BITS;
-    uint32_t first_id = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        place_instance(resident, &resident->instances[i], &blocks[i], first_id);
-        uint32_t triangles = resident->instances[i].index_count / 3;
-        first_id += (triangles + block_size - 1) / block_size * block_size;
-    }
+    for (uint32_t i = 0; i < count; i++)
+        place_instance(resident, &resident->instances[i], &blocks[i]);
     float diagonal = glm_vec3_distance(resident->bounds_min, resident->bounds_max);
     resident->diagonal_m = isfinite(diagonal) && diagonal > 0.0f ? diagonal : 1.0f;
     bool done = gpu_buffer_ensure(resident->gpu, &resident->instance_blocks, "geometry.instances",

@@ -139,6 +139,7 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
                                   0.0f, &builder->views[builder->layers++]);
         if (resident->directional_light == NO_SHADOW) {
             resident->directional_light = block->shadow[2];
+            resident->sun_shadow_view = block->shadow[0];
             memcpy(resident->directional_axis, block->direction, sizeof(vec3));
             block->shadow[3] = 1;
         }
@@ -167,33 +168,14 @@ static void add_area_light_shadow(struct light_builder *builder, struct area_lig
     add_cube_views(builder, light->center);
 }
 
-// Keeps rendered layers whose view is as it was; casters that moved make all stale elsewhere.
+// Keeps rendered layers whose view is as it was; when any caster changed, all are stale.
 static bool keep_shadow_map(struct resident *resident, const struct light_builder *builder)
 {
     uint32_t layers = builder->layers;
-    if (!resident->shadow_map || gpu_texture_layers(resident->shadow_map) < layers) {
-        for (uint32_t i = 0; i < MAX_SHADOW_LAYERS; i++)
-            gpu_framebuffer_destroy(&resident->shadow_framebuffers[i]);
-        gpu_texture_destroy(&resident->shadow_map);
-        struct gpu_texture_params params = {
-            .label = "shadow_map",
-            .format = GPU_FORMAT_DEPTH32F,
-            .width = layers ? SHADOW_MAP_EDGE : 1,
-            .height = layers ? SHADOW_MAP_EDGE : 1,
-            .layers = layers ? layers : 1,
-            .filter = GPU_FILTER_SHADOW_COMPARE,
-        };
-        resident->shadow_map = gpu_texture_create(resident->gpu, &params);
-        if (!resident->shadow_map)
-            return false;
-        for (uint32_t i = 0; i < layers; i++) {
-            resident->shadow_framebuffers[i] =
-                gpu_framebuffer_create(resident->gpu, "shadow_map", NULL, resident->shadow_map, i);
-            if (!resident->shadow_framebuffers[i])
-                return false;
-        }
-        memset(resident->shadow_stale, true, sizeof(resident->shadow_stale));
-    }
+    if (!resident->shadow_map)
+        resident->shadow_map = shadow_map_create(resident->gpu, SHADOW_MAP_EDGE);
+    if (!resident->shadow_map || !shadow_map_reserve_lamps(resident->shadow_map, layers))
+        return false;
     for (uint32_t i = 0; i < layers; i++)
         if (memcmp(&resident->shadow_views[i], &builder->views[i], sizeof(builder->views[i])) != 0)
             resident->shadow_stale[i] = true;

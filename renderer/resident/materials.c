@@ -16,11 +16,24 @@ static float f0_from_ior(float ior)
     return ratio * ratio;
 }
 
-static void fill_texture_block(const struct resident *resident, struct texture_block *block,
-                               const struct scene_texture *texture, bool color)
+static uint32_t log2_of(uint32_t power_of_two)
 {
-    const struct image_place *place =
-        color ? &resident->color_places[texture->image] : &resident->data_places[texture->image];
+    uint32_t log2 = 0;
+    while ((1u << log2) < power_of_two)
+        log2++;
+    return log2;
+}
+
+static bool has_transform(const struct scene_texture *texture)
+{
+    return texture->offset[0] != 0.0f || texture->offset[1] != 0.0f || texture->scale[0] != 1.0f ||
+           texture->scale[1] != 1.0f || texture->rotation_rad != 0.0f;
+}
+
+static void fill_texture_block(const struct texture_space *space, struct texture_block *block,
+                               const struct scene_texture *texture)
+{
+    const struct image_place *place = &space->places[texture->image];
     float c = cosf(texture->rotation_rad), s = sinf(texture->rotation_rad);
     // KHR_texture_transform: translation * rotation * scale, rotation counter-clockwise in a frame
     // whose v points down.
@@ -28,14 +41,12 @@ static void fill_texture_block(const struct resident *resident, struct texture_b
         .uv_row_u = {c * texture->scale[0], s * texture->scale[1], texture->offset[0]},
         .uv_row_v = {-s * texture->scale[0], c * texture->scale[1], texture->offset[1]},
     };
-    struct gpu_texture *array = resident->texture_classes[place->class_number];
-    block->info[0] = place->class_number;
-    block->info[1] = place->layer;
-    block->info[2] = (texture->uv_set == 1 ? TEXTURE_UV_SET_1 : 0) |
-                     (texture->nearest ? TEXTURE_NEAREST : 0) |
-                     ((uint32_t)texture->wrap_u << TEXTURE_WRAP_U_BIT) |
-                     ((uint32_t)texture->wrap_v << TEXTURE_WRAP_V_BIT);
-    block->info[3] = gpu_texture_edge(array);
+    uint32_t edge_log2 = log2_of(gpu_texture_edge(space->classes[place->class_number]));
+    block->info[0] =
+        (texture->uv_set == 1 ? TEXTURE_UV_SET_1 : 0) | (texture->nearest ? TEXTURE_NEAREST : 0) |
+        ((uint32_t)texture->wrap_u << TEXTURE_WRAP_U_BIT) |
+        ((uint32_t)texture->wrap_v << TEXTURE_WRAP_V_BIT) | (edge_log2 << TEXTURE_EDGE_BIT) |
+        (place->class_number << TEXTURE_CLASS_BIT) | (place->layer << TEXTURE_LAYER_BIT);
 }
 
 static void fill_material_block(struct material_block *block, const struct scene_material *material)
@@ -75,6 +86,7 @@ bool resident_upload_materials(struct resident *resident)
     struct material_block *materials = calloc(count, sizeof(*materials));
     struct texture_block *textures = calloc(count * TEXTURE_SLOTS, sizeof(*textures));
     bool done = materials && textures;
+    resident->texture_transforms = false;
     for (uint32_t i = 0; done && i < scene->material_count; i++) {
         const struct scene_material *material = &scene->materials[i];
         fill_material_block(&materials[i], material);
@@ -82,11 +94,11 @@ bool resident_upload_materials(struct resident *resident)
         for (int slot = 0; slot < SCENE_TEXTURE_SLOT_COUNT; slot++) {
             if (material->textures[slot].image >= scene->image_count)
                 continue;
+            const struct scene_texture *texture = &material->textures[slot];
             materials[i].info[2] |= 1u << slot;
-            fill_texture_block(resident, &textures[i * TEXTURE_SLOTS + (uint32_t)slot],
-                               &material->textures[slot],
-                               slot == SCENE_TEXTURE_BASE_COLOR || slot == SCENE_TEXTURE_EMISSIVE ||
-                                   slot == SCENE_TEXTURE_SPECULAR_COLOR);
+            resident->texture_transforms = resident->texture_transforms || has_transform(texture);
+            fill_texture_block(&resident->texture_spaces[resident_texture_space(slot)],
+                               &textures[i * TEXTURE_SLOTS + (uint32_t)slot], texture);
         }
     }
     done = done &&

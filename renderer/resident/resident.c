@@ -34,7 +34,8 @@ void resident_destroy(struct resident **resident_slot)
     gpu_geometry_destroy(&resident->geometry);
     gpu_buffer_destroy(&resident->vertices);
     gpu_buffer_destroy(&resident->indices);
-    gpu_buffer_destroy(&resident->instance_ids);
+    gpu_buffer_destroy(&resident->raster_vertices);
+    gpu_buffer_destroy(&resident->raster_indices);
     gpu_buffer_destroy(&resident->instance_blocks);
     gpu_buffer_destroy(&resident->id_blocks);
     gpu_buffer_destroy(&resident->materials);
@@ -42,16 +43,16 @@ void resident_destroy(struct resident **resident_slot)
     gpu_buffer_destroy(&resident->lights);
     gpu_buffer_destroy(&resident->area_lights);
     gpu_buffer_destroy(&resident->environment);
-    for (uint32_t i = 0; i < MAX_TEXTURE_CLASSES; i++)
-        gpu_texture_destroy(&resident->texture_classes[i]);
-    for (uint32_t i = 0; i < MAX_SHADOW_LAYERS; i++)
-        gpu_framebuffer_destroy(&resident->shadow_framebuffers[i]);
-    gpu_texture_destroy(&resident->shadow_map);
+    for (int space = 0; space < 2; space++) {
+        for (uint32_t i = 0; i < MAX_CLASSES_PER_SPACE; i++)
+            gpu_texture_destroy(&resident->texture_spaces[space].classes[i]);
+        free(resident->texture_spaces[space].places);
+    }
+    shadow_map_destroy(&resident->shadow_map);
     gpu_texture_destroy(&resident->environment_levels);
     gpu_texture_destroy(&resident->environment_background);
     free(resident->instances);
-    free(resident->color_places);
-    free(resident->data_places);
+    free(resident->clusters);
     free(resident);
 }
 
@@ -124,9 +125,11 @@ void resident_bind(const struct resident *resident)
     gpu_bind_storage(gpu, BIND_LIGHTS, resident->lights);
     gpu_bind_storage(gpu, BIND_AREA_LIGHTS, resident->area_lights);
     gpu_bind_storage(gpu, BIND_ENVIRONMENT, resident->environment);
-    gpu_bind_texture(gpu, UNIT_SHADOW_MAP, resident->shadow_map);
+    gpu_bind_texture(gpu, UNIT_SHADOW_MAP, shadow_map_texture(resident->shadow_map));
     gpu_bind_texture(gpu, UNIT_ENVIRONMENT, resident->environment_levels);
     gpu_bind_texture(gpu, UNIT_BACKGROUND, resident->environment_background);
-    for (uint32_t i = 0; i < resident->texture_class_count; i++)
-        gpu_bind_texture(gpu, UNIT_MATERIAL_CLASSES + i, resident->texture_classes[i]);
+    static const uint32_t units[2] = {UNIT_COLOR_CLASSES, UNIT_DATA_CLASSES};
+    for (int space = 0; space < 2; space++)
+        for (uint32_t i = 0; i < resident->texture_spaces[space].class_count; i++)
+            gpu_bind_texture(gpu, units[space] + i, resident->texture_spaces[space].classes[i]);
 }

@@ -6,22 +6,36 @@
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/gpu.h"
 #include "renderer/gpu/texture.h"
+#include "renderer/resident/shadow_layers.h"
 #include "shared/bindings.h"
 #include "shared/blocks.h"
 
-#define SHADOW_MAP_EDGE 2048u
+#define SHADOW_MAP_EDGE   2048u
+#define MAX_VIEW_CASCADES (RENDERER_MAX_VIEWS * MAX_CASCADES)
 
 // Draws are sorted into groups of one kind and one face culling.
 enum draw_kind { DRAW_OPAQUE, DRAW_MASKED, DRAW_TRANSPARENT, DRAW_KIND_COUNT };
 #define DRAW_CULL_COUNT  3 // enum gpu_cull
 #define DRAW_GROUP_COUNT (DRAW_KIND_COUNT * DRAW_CULL_COUNT)
 
+// Up to 2^ID_BLOCK_BITS triangles of a primitive: what is culled at once. Local space. All its
+// triangles face away from an eye if dot(center - eye, axis) >= cutoff * |center - eye| + radius.
+struct resident_cluster {
+    float center[3];
+    float radius;
+    float axis[3];
+    float cutoff; // 2 where the triangles face too many ways to say
+};
+
 struct resident_instance {
     uint32_t node;
     uint32_t primitive;
     uint32_t index_first;
     uint32_t index_count;
-    uint8_t group; // kind * DRAW_CULL_COUNT + cull
+    uint32_t cluster_first; // in resident->clusters
+    uint32_t first_id;      // visibility id of the first triangle, less 1
+    float scale;            // largest stretch of the placement
+    uint8_t group;          // kind * DRAW_CULL_COUNT + cull
     bool visible;
     float bounds_min[3]; // world
     float bounds_max[3];
@@ -39,6 +53,20 @@ struct resident_counts {
     uint32_t blinn_phong_materials;
 };
 
+// Pictures of one colour space: an array per edge, and where each of the scene's images went.
+struct texture_space {
+    uint32_t class_count;
+    struct gpu_texture *classes[MAX_CLASSES_PER_SPACE];
+    struct image_place {
+        bool used;
+        uint32_t class_number;
+        uint32_t layer;
+        float mean[4]; // linear
+    } * places;
+};
+
+enum { TEXTURE_SPACE_COLOR, TEXTURE_SPACE_DATA };
+
 struct resident {
     struct gpu *gpu;
     const struct scene *scene;
@@ -47,34 +75,33 @@ struct resident {
 
     struct gpu_buffer *vertices;
     struct gpu_buffer *indices;
-    struct gpu_buffer *instance_ids; // 0, 1, 2 ...
     struct gpu_buffer *instance_blocks;
     struct gpu_buffer *id_blocks;
-    struct gpu_geometry *geometry;
+    struct gpu_buffer *raster_vertices;
+    struct gpu_buffer *raster_indices; // triangle by triangle as `indices`, but turned
+    struct gpu_geometry *geometry;     // of the two
     struct resident_instance *instances;
-    bool drawable; // any triangle at all
+    struct resident_cluster *clusters; // of all primitives
+    uint32_t cluster_count;            // of all instances: the most draws there can be
+    bool drawable;                     // any triangle at all
     float bounds_min[3];
     float bounds_max[3];
     float diagonal_m; // of the bounds; 1 where there is no geometry
 
     struct gpu_buffer *materials;
     struct gpu_buffer *texture_blocks;
-    uint32_t texture_class_count;
-    struct gpu_texture *texture_classes[MAX_TEXTURE_CLASSES];
-    struct image_place {
-        uint32_t class_number;
-        uint32_t layer;
-        float mean[4];              // linear mean colour
-    } * color_places, *data_places; // by image id: as sRGB colour and as linear data
+    bool texture_transforms;                // any texture has a KHR_texture_transform of its own
+    struct texture_space texture_spaces[2]; // sRGB colour, linear data
 
     struct gpu_buffer *lights;
     struct gpu_buffer *area_lights;
     uint32_t directional_light; // index in `lights` of the one with view cascades, or NO_SHADOW
     float directional_axis[3];
-    struct gpu_texture *shadow_map;
-    struct gpu_framebuffer *shadow_framebuffers[MAX_SHADOW_LAYERS];
+    struct shadow_map *shadow_map;
     struct shadow_view_block shadow_views[MAX_SHADOW_LAYERS];
     bool shadow_stale[MAX_SHADOW_LAYERS];
+    uint64_t shadow_epoch_seen;
+    uint32_t sun_shadow_view; // of directional_light
     uint64_t shadow_revision; // counts changes of any shadow caster or light
 
     struct gpu_buffer *environment;
@@ -92,12 +119,17 @@ bool resident_update(struct resident *resident, struct error *out_error);
 
 // Parts of the above, one file each.
 bool resident_upload_geometry(struct resident *resident);
+bool resident_upload_raster_mesh(struct resident *resident);
+bool resident_build_clusters(struct resident *resident);
 bool resident_upload_instances(struct resident *resident);
 bool resident_upload_textures(struct resident *resident);
 bool resident_upload_materials(struct resident *resident);
 bool resident_upload_lights(struct resident *resident);
 bool resident_upload_environment(struct resident *resident);
 void resident_count_materials(struct resident *resident);
+
+// Which space a texture slot reads from.
+int resident_texture_space(int slot);
 
 // Binds all buffers and textures of the scene to their slots.
 void resident_bind(const struct resident *resident);

@@ -17,9 +17,12 @@
 #define MAX_SOFTWARE_EDGE_LOG2 11
 #define DEFAULT_ANISOTROPY     1.0f
 
+// On a software renderer every class costs each pixel, whether it lies in it or not: small pictures
+// are enlarged into the next class as long as that takes no more memory than this.
+#define MAX_SOFTWARE_ENLARGED_BYTES (96u << 20)
+
 struct texture_class {
     uint32_t edge_log2;
-    bool color;
     uint32_t layers;
 };
 
@@ -34,42 +37,36 @@ static uint32_t edge_log2_of(const struct resident *resident, const struct image
     return log2;
 }
 
-static bool slot_is_color(int slot)
+int resident_texture_space(int slot)
 {
-    return slot == SCENE_TEXTURE_BASE_COLOR || slot == SCENE_TEXTURE_EMISSIVE ||
-           slot == SCENE_TEXTURE_SPECULAR_COLOR;
+    return COLOR_TEXTURE_SLOTS & (1u << slot) ? TEXTURE_SPACE_COLOR : TEXTURE_SPACE_DATA;
 }
 
-// The class for an edge and colour space, made if need be; when all classes are taken, the next
-// larger one of the colour space.
-static uint32_t find_class(struct texture_class *classes, uint32_t *count, uint32_t edge_log2,
-                           bool color)
+static uint64_t class_bytes(uint32_t edge_log2, uint32_t layers)
 {
-    uint32_t best = MAX_TEXTURE_CLASSES;
-    for (uint32_t i = 0; i < *count; i++) {
-        if (classes[i].color != color)
+    return ((uint64_t)4 << (2 * edge_log2)) * 4 / 3 * layers;
+}
+
+// Turns a count of pictures per edge into classes, largest first: pictures of a merged edge go to
+// the next larger class. `out_class_of` tells by edge.
+static uint32_t choose_classes(uint32_t counts[MAX_CLASS_EDGE_LOG2 + 1], bool software,
+                               struct texture_class classes[MAX_CLASSES_PER_SPACE],
+                               uint32_t out_class_of[MAX_CLASS_EDGE_LOG2 + 1])
+{
+    uint32_t class_count = 0;
+    for (uint32_t log2 = MAX_CLASS_EDGE_LOG2 + 1; log2-- > MIN_CLASS_EDGE_LOG2;) {
+        if (counts[log2] == 0)
             continue;
-        if (classes[i].edge_log2 == edge_log2)
-            return i;
-        if (classes[i].edge_log2 > edge_log2 &&
-            (best == MAX_TEXTURE_CLASSES || classes[i].edge_log2 < classes[best].edge_log2))
-            best = i;
+        bool merge = class_count == MAX_CLASSES_PER_SPACE;
+        if (class_count > 0 && software)
+            merge = merge || class_bytes(classes[class_count - 1].edge_log2, counts[log2]) <=
+                                 MAX_SOFTWARE_ENLARGED_BYTES;
+        if (!merge)
+            classes[class_count++] = (struct texture_class){.edge_log2 = log2};
+        out_class_of[log2] = class_count - 1;
+        classes[class_count - 1].layers += counts[log2];
     }
-    // Half of the classes for either colour space.
-    uint32_t of_space = 0;
-    for (uint32_t i = 0; i < *count; i++)
-        of_space += classes[i].color == color;
-    if (of_space < MAX_TEXTURE_CLASSES / 2) {
-        classes[*count] = (struct texture_class){.edge_log2 = edge_log2, .color = color};
-        return (*count)++;
-    }
-    if (best != MAX_TEXTURE_CLASSES)
-        return best;
-    for (uint32_t i = 0; i < *count; i++)
-        if (classes[i].color == color &&
-            (best == MAX_TEXTURE_CLASSES || classes[i].edge_log2 > classes[best].edge_log2))
-            best = i;
-    return best;
+    return class_count;
 }
 
 static float linear_from_srgb(float value)
@@ -93,10 +90,10 @@ static void compute_mean(const struct image *image, bool color, float out_mean[4
 }
 
 // Writes an image into a layer, scaled to the class's edge.
-static bool write_layer(struct gpu_texture *texture, const struct texture_class *class,
-                        uint32_t layer, const struct image *image)
+static bool write_layer(struct gpu_texture *texture, uint32_t layer, const struct image *image,
+                        bool color)
 {
-    uint32_t edge = 1u << class->edge_log2;
+    uint32_t edge = gpu_texture_edge(texture);
     if (image->width == edge && image->height == edge) {
         gpu_texture_write(texture, 0, layer, image->rgba);
         return true;
@@ -104,105 +101,94 @@ static bool write_layer(struct gpu_texture *texture, const struct texture_class 
     uint8_t *scaled = malloc((size_t)edge * edge * 4);
     if (!scaled)
         return false;
-    stbir_resize_uint8_generic(
-        image->rgba, (int)image->width, (int)image->height, 0, scaled, (int)edge, (int)edge, 0, 4,
-        3, STBIR_FLAG_ALPHA_PREMULTIPLIED, STBIR_EDGE_WRAP, STBIR_FILTER_DEFAULT,
-        class->color ? STBIR_COLORSPACE_SRGB : STBIR_COLORSPACE_LINEAR, NULL);
+    stbir_resize_uint8_generic(image->rgba, (int)image->width, (int)image->height, 0, scaled,
+                               (int)edge, (int)edge, 0, 4, 3, STBIR_FLAG_ALPHA_PREMULTIPLIED,
+                               STBIR_EDGE_WRAP, STBIR_FILTER_DEFAULT,
+                               color ? STBIR_COLORSPACE_SRGB : STBIR_COLORSPACE_LINEAR, NULL);
     gpu_texture_write(texture, 0, layer, scaled);
     free(scaled);
     return true;
 }
 
-// Marks which images are used as colour and as data.
-static void find_uses(const struct scene *scene, uint8_t *uses)
+// Marks the images that textures of the space refer to, and counts them by edge.
+static void find_uses(const struct resident *resident, int space_number,
+                      uint32_t out_counts[MAX_CLASS_EDGE_LOG2 + 1])
 {
+    const struct scene *scene = resident->scene;
+    struct image_place *places = resident->texture_spaces[space_number].places;
     for (uint32_t i = 0; i < scene->material_count; i++)
         for (int slot = 0; slot < SCENE_TEXTURE_SLOT_COUNT; slot++) {
             uint32_t image = scene->materials[i].textures[slot].image;
-            if (image < scene->image_count)
-                uses[image] |= slot_is_color(slot) ? 1 : 2;
+            if (image >= scene->image_count || resident_texture_space(slot) != space_number ||
+                places[image].used)
+                continue;
+            places[image].used = true;
+            out_counts[edge_log2_of(resident, scene->images[image])]++;
         }
 }
 
-static bool create_arrays(struct resident *resident, const struct texture_class *classes,
-                          uint32_t count)
+static bool create_arrays(struct resident *resident, struct texture_space *space, bool color,
+                          const struct texture_class *classes)
 {
-    for (uint32_t i = 0; i < count; i++) {
-        struct gpu_texture_params params = {
-            .label = "textures",
-            .format = classes[i].color ? GPU_FORMAT_SRGB8_ALPHA8 : GPU_FORMAT_RGBA8,
-            .width = 1u << classes[i].edge_log2,
-            .height = 1u << classes[i].edge_log2,
-            .layers = classes[i].layers,
-            .levels = classes[i].edge_log2 + 1,
-            .filter = GPU_FILTER_LINEAR,
-            .repeat_u = true,
-            .repeat_v = true,
-            .anisotropy = DEFAULT_ANISOTROPY,
-        };
-        resident->texture_classes[i] = gpu_texture_create(resident->gpu, &params);
-        if (!resident->texture_classes[i])
+    // Steps between levels do not show in roughness and normals as they do in colour.
+    bool software = gpu_get_info(resident->gpu)->software;
+    for (uint32_t i = 0; i < space->class_count; i++) {
+        space->classes[i] = gpu_texture_create(
+            resident->gpu,
+            &(struct gpu_texture_params){
+                .label = "textures",
+                .format = color ? GPU_FORMAT_SRGB8_ALPHA8 : GPU_FORMAT_RGBA8,
+                .width = 1u << classes[i].edge_log2,
+                .height = 1u << classes[i].edge_log2,
+                .layers = classes[i].layers,
+                .levels = classes[i].edge_log2 + 1,
+                .filter = software && !color ? GPU_FILTER_LINEAR_NEAREST_LEVEL : GPU_FILTER_LINEAR,
+                .repeat_u = true,
+                .repeat_v = true,
+            });
+        if (!space->classes[i])
             return false;
     }
     return true;
 }
 
-static bool fill_arrays(struct resident *resident, const struct texture_class *classes,
-                        const uint8_t *uses)
+static bool upload_space(struct resident *resident, int space_number)
 {
     const struct scene *scene = resident->scene;
-    for (uint32_t i = 0; i < scene->image_count; i++)
-        for (int space = 0; space < 2; space++) {
-            if (!(uses[i] & (1 << space)))
-                continue;
-            struct image_place *place =
-                space == 0 ? &resident->color_places[i] : &resident->data_places[i];
-            compute_mean(scene->images[i], space == 0, place->mean);
-            if (!write_layer(resident->texture_classes[place->class_number],
-                             &classes[place->class_number], place->layer, scene->images[i]))
-                return false;
-        }
-    for (uint32_t i = 0; i < resident->texture_class_count; i++)
-        gpu_texture_generate_levels(resident->texture_classes[i]);
+    struct texture_space *space = &resident->texture_spaces[space_number];
+    bool color = space_number == TEXTURE_SPACE_COLOR;
+    for (uint32_t i = 0; i < MAX_CLASSES_PER_SPACE; i++)
+        gpu_texture_destroy(&space->classes[i]);
+    free(space->places);
+    space->places = calloc(scene->image_count ? scene->image_count : 1, sizeof(*space->places));
+    if (!space->places)
+        return false;
+    uint32_t counts[MAX_CLASS_EDGE_LOG2 + 1] = {0}, class_of[MAX_CLASS_EDGE_LOG2 + 1] = {0};
+    struct texture_class classes[MAX_CLASSES_PER_SPACE];
+    find_uses(resident, space_number, counts);
+    space->class_count =
+        choose_classes(counts, gpu_get_info(resident->gpu)->software, classes, class_of);
+    if (!create_arrays(resident, space, color, classes))
+        return false;
+    uint32_t next_layer[MAX_CLASSES_PER_SPACE] = {0};
+    for (uint32_t i = 0; i < scene->image_count; i++) {
+        struct image_place *place = &space->places[i];
+        if (!place->used)
+            continue;
+        place->class_number = class_of[edge_log2_of(resident, scene->images[i])];
+        place->layer = next_layer[place->class_number]++;
+        compute_mean(scene->images[i], color, place->mean);
+        if (!write_layer(space->classes[place->class_number], place->layer, scene->images[i],
+                         color))
+            return false;
+    }
+    for (uint32_t i = 0; i < space->class_count; i++)
+        gpu_texture_generate_levels(space->classes[i]);
     return true;
 }
 
 bool resident_upload_textures(struct resident *resident)
 {
-    const struct scene *scene = resident->scene;
-    for (uint32_t i = 0; i < MAX_TEXTURE_CLASSES; i++)
-        gpu_texture_destroy(&resident->texture_classes[i]);
-    resident->texture_class_count = 0;
-    free(resident->color_places);
-    free(resident->data_places);
-    size_t count = scene->image_count ? scene->image_count : 1;
-    resident->color_places = calloc(count, sizeof(*resident->color_places));
-    resident->data_places = calloc(count, sizeof(*resident->data_places));
-    uint8_t *uses = calloc(count, 1);
-    if (!uses || !resident->color_places || !resident->data_places) {
-        free(uses);
-        return false;
-    }
-    find_uses(scene, uses);
-    struct texture_class classes[MAX_TEXTURE_CLASSES];
-    // Largest first, so that a shortage of classes never shrinks a picture.
-    for (uint32_t log2 = MAX_CLASS_EDGE_LOG2 + 1; log2-- > MIN_CLASS_EDGE_LOG2;)
-        for (uint32_t i = 0; i < scene->image_count; i++) {
-            if (edge_log2_of(resident, scene->images[i]) != log2)
-                continue;
-            for (int space = 0; space < 2; space++) {
-                if (!(uses[i] & (1 << space)))
-                    continue;
-                uint32_t number =
-                    find_class(classes, &resident->texture_class_count, log2, space == 0);
-                struct image_place *place =
-                    space == 0 ? &resident->color_places[i] : &resident->data_places[i];
-                place->class_number = number;
-                place->layer = classes[number].layers++;
-            }
-        }
-    bool done = create_arrays(resident, classes, resident->texture_class_count) &&
-                fill_arrays(resident, classes, uses);
-    free(uses);
-    return done;
+    return upload_space(resident, TEXTURE_SPACE_COLOR) &&
+           upload_space(resident, TEXTURE_SPACE_DATA);
 }

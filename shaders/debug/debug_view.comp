@@ -59,10 +59,15 @@ uint lights_of_tile(uvec2 pixel)
 vec3 cascade_color(surface s)
 {
 #if SHADOWS
-    vec3 at;
-    uint cascade = find_cascade(s.position, s.geometric_normal, s.geometric_normal, at);
-    vec3 colors[4] = {vec3(1.0, 0.35, 0.3), vec3(0.4, 1.0, 0.4), vec3(0.4, 0.55, 1.0),
-                      vec3(1.0, 0.9, 0.4)};
+    if (frame.lights.w == 0u)
+        return vec3(0.35 + 0.65 * clamp(dot(s.normal, s.view), 0.0, 1.0));
+    bool inside;
+    uint view_number = frame.options.y;
+    vec4 at = project_to_shadow(view_number, s.position, s.geometric_normal, s.geometric_normal,
+                                inside);
+    uint cascade = refine_by_cascade(at);
+    const vec3 colors[4] = {vec3(1.0, 0.35, 0.3), vec3(0.4, 1.0, 0.4), vec3(0.4, 0.55, 1.0),
+                            vec3(1.0, 0.9, 0.4)};
     vec3 tint = cascade < frame.lights.w ? colors[cascade] : colors[3];
     return tint * (0.35 + 0.65 * clamp(dot(s.normal, s.view), 0.0, 1.0));
 #else

@@ -102,14 +102,9 @@ struct layer {
     float attenuation_distance_m;
 };
 
-#if TEXTURE_CLASSES > 0
-vec3 mapped_normal(triangle t, material_block material, texture_point point, vec3 weights,
-                   vec3 normal)
+#if TEXTURED
+vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
 {
-    if ((material.info.z & (1u << TEXTURE_NORMAL)) == 0u)
-        return normal;
-    vec3 tangent_space = sample_slot(material, TEXTURE_NORMAL, point).xyz * 2.0 - 1.0;
-    tangent_space.xy *= material.surface.z;
     vec4 tangent_local = interpolate4(t, 6u, weights);
     vec3 tangent = mat3(instances[t.instance].world_from_local) * tangent_local.xyz;
     tangent = tangent - normal * dot(normal, tangent);
@@ -152,7 +147,7 @@ surface load_surface(uint id, vec2 pixel, out layer through)
     vec3 specular_color = material.specular_color.rgb;
     float transmission = material.dielectric.z;
     s.emission = material.emission.rgb;
-#if TEXTURE_CLASSES > 0
+#if TEXTURED
     if (material.info.z != 0u) {
         texture_point point;
         vec3 weights_dx = plane_weights(t, direction + frame.ray_dx.xyz);
@@ -161,20 +156,34 @@ surface load_surface(uint id, vec2 pixel, out layer through)
         point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
         point.dx = uv[0] * weights_dx.x + uv[1] * weights_dx.y + uv[2] * weights_dx.z - point.uv;
         point.dy = uv[0] * weights_dy.x + uv[1] * weights_dy.y + uv[2] * weights_dy.z - point.uv;
-        s.normal = mapped_normal(t, material, point, weights, s.normal);
-        // One loop, so that the sampler code is compiled once.
-        vec4 texels[TEXTURE_SLOTS];
-        for (uint slot = 0u; slot < TEXTURE_SLOTS; slot++)
-            texels[slot] =
-                slot == TEXTURE_NORMAL ? vec4(1.0) : sample_slot(material, slot, point);
-        base *= texels[TEXTURE_BASE_COLOR];
-        roughness *= texels[TEXTURE_METALLIC_ROUGHNESS].g;
-        metallic *= texels[TEXTURE_METALLIC_ROUGHNESS].b;
-        occlusion = 1.0 + material.surface.w * (texels[TEXTURE_OCCLUSION].r - 1.0);
-        s.emission *= texels[TEXTURE_EMISSIVE].rgb;
-        transmission *= texels[TEXTURE_TRANSMISSION].r;
-        weight *= texels[TEXTURE_SPECULAR].a;
-        specular_color *= texels[TEXTURE_SPECULAR_COLOR].rgb;
+        // Loops over the slots in use, so that the sampler code is compiled once per space.
+#if COLOR_CLASSES > 0
+        for (uint slots = material.info.z & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
+            uint slot = uint(findLSB(slots));
+            vec4 texel = sample_color(material.info.y + slot, point);
+            base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
+            s.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
+            specular_color *= slot == TEXTURE_SPECULAR_COLOR ? texel.rgb : vec3(1.0);
+        }
+#endif
+#if DATA_CLASSES > 0
+        vec3 tangent_space = vec3(0.0, 0.0, 1.0);
+        for (uint slots = material.info.z & ~COLOR_TEXTURE_SLOTS; slots != 0u;
+             slots &= slots - 1u) {
+            uint slot = uint(findLSB(slots));
+            vec4 texel = sample_data(material.info.y + slot, point);
+            roughness *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.g : 1.0;
+            metallic *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.b : 1.0;
+            occlusion += slot == TEXTURE_OCCLUSION ? material.surface.w * (texel.r - 1.0) : 0.0;
+            transmission *= slot == TEXTURE_TRANSMISSION ? texel.r : 1.0;
+            weight *= slot == TEXTURE_SPECULAR ? texel.a : 1.0;
+            if (slot == TEXTURE_NORMAL)
+                tangent_space = vec3((texel.xy * 2.0 - 1.0) * material.surface.z,
+                                     texel.z * 2.0 - 1.0);
+        }
+        if ((material.info.z & (1u << TEXTURE_NORMAL)) != 0u)
+            s.normal = mapped_normal(t, tangent_space, weights, s.normal);
+#endif
     }
 #endif
     if (dot(s.geometric_normal, s.view) < 0.0) {

@@ -1,5 +1,6 @@
 // Materials and their textures, as glTF 2.0 and its KHR_materials_* extensions define them.
-// TEXTURE_CLASSES: how many texture arrays (one per size and colour space) the scene has.
+// COLOR_CLASSES, DATA_CLASSES: how many texture arrays (one per size) the scene has of sRGB and of
+// linear pictures; TEXTURE_TRANSFORMS: whether any texture has a transform of its own.
 #include "lib/frame.glsl"
 
 layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
@@ -7,13 +8,20 @@ layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
     material_block materials[];
 };
 
-#if TEXTURE_CLASSES > 0
+#define TEXTURED (COLOR_CLASSES + DATA_CLASSES > 0)
+
+#if TEXTURED
 layout(std430, binding = BIND_TEXTURES) readonly buffer texture_storage
 {
     texture_block textures[];
 };
 
-layout(binding = UNIT_MATERIAL_CLASSES) uniform sampler2DArray texture_classes[TEXTURE_CLASSES];
+#if COLOR_CLASSES > 0
+layout(binding = UNIT_COLOR_CLASSES) uniform sampler2DArray color_classes[COLOR_CLASSES];
+#endif
+#if DATA_CLASSES > 0
+layout(binding = UNIT_DATA_CLASSES) uniform sampler2DArray data_classes[DATA_CLASSES];
+#endif
 
 // Texture coordinates of both sets, and their change per pixel to the right and downwards.
 struct texture_point {
@@ -21,6 +29,8 @@ struct texture_point {
     vec4 dx;
     vec4 dy;
 };
+
+const float MAX_FOOTPRINT_TEXELS = 1e7;
 
 float wrap_coordinate(float u, uint mode, float edge)
 {
@@ -32,70 +42,134 @@ float wrap_coordinate(float u, uint mode, float edge)
     return clamp(u, half_texel, 1.0 - half_texel);
 }
 
-vec4 sample_class(uint class_number, vec3 at, vec2 dx, vec2 dy)
+// A software renderer executes both sides of every branch, so colour and data textures are sampled
+// by different functions: each runs through the classes of its own space only.
+#if COLOR_CLASSES > 0
+vec4 sample_color_class(uint class_number, vec3 at, float lod)
 {
-#if TEXTURE_CLASSES > 1
+#if COLOR_CLASSES > 1
     if (class_number == 1u)
-        return textureGrad(texture_classes[1], at, dx, dy);
+        return textureLod(color_classes[1], at, lod);
 #endif
-#if TEXTURE_CLASSES > 2
+#if COLOR_CLASSES > 2
     if (class_number == 2u)
-        return textureGrad(texture_classes[2], at, dx, dy);
+        return textureLod(color_classes[2], at, lod);
 #endif
-#if TEXTURE_CLASSES > 3
+#if COLOR_CLASSES > 3
     if (class_number == 3u)
-        return textureGrad(texture_classes[3], at, dx, dy);
+        return textureLod(color_classes[3], at, lod);
 #endif
-#if TEXTURE_CLASSES > 4
+#if COLOR_CLASSES > 4
     if (class_number == 4u)
-        return textureGrad(texture_classes[4], at, dx, dy);
+        return textureLod(color_classes[4], at, lod);
 #endif
-#if TEXTURE_CLASSES > 5
-    if (class_number == 5u)
-        return textureGrad(texture_classes[5], at, dx, dy);
+    return textureLod(color_classes[0], at, lod);
+}
 #endif
-#if TEXTURE_CLASSES > 6
-    if (class_number == 6u)
-        return textureGrad(texture_classes[6], at, dx, dy);
+
+#if DATA_CLASSES > 0
+vec4 sample_data_class(uint class_number, vec3 at, float lod)
+{
+#if DATA_CLASSES > 1
+    if (class_number == 1u)
+        return textureLod(data_classes[1], at, lod);
 #endif
-#if TEXTURE_CLASSES > 7
-    if (class_number == 7u)
-        return textureGrad(texture_classes[7], at, dx, dy);
+#if DATA_CLASSES > 2
+    if (class_number == 2u)
+        return textureLod(data_classes[2], at, lod);
 #endif
-#if TEXTURE_CLASSES > 8
-    if (class_number == 8u)
-        return textureGrad(texture_classes[8], at, dx, dy);
+#if DATA_CLASSES > 3
+    if (class_number == 3u)
+        return textureLod(data_classes[3], at, lod);
 #endif
-#if TEXTURE_CLASSES > 9
-    if (class_number == 9u)
-        return textureGrad(texture_classes[9], at, dx, dy);
+#if DATA_CLASSES > 4
+    if (class_number == 4u)
+        return textureLod(data_classes[4], at, lod);
 #endif
-    return textureGrad(texture_classes[0], at, dx, dy);
+    return textureLod(data_classes[0], at, lod);
+}
+#endif
+
+// Where and how to sample: the footprint's place in the texture, its longer axis, level and number
+// of samples along the axis.
+struct footprint {
+    uint class_number;
+    vec3 at; // z: layer
+    vec2 axis;
+    float lod;
+    float samples;
+};
+
+// Anisotropic filtering: trilinear samples along the longer axis of the pixel's footprint, at the
+// level that fits the shorter one (as EXT_texture_filter_anisotropic describes it). Done here
+// because the loops of software samplers grow without bound with the gradients.
+void set_filter(inout footprint f, vec2 dx, vec2 dy, float edge)
+{
+    float length_x = length(dx) * edge;
+    float length_y = length(dy) * edge;
+    f.axis = length_x > length_y ? dx : dy;
+    float major = max(max(length_x, length_y), 1e-6);
+    // Gradients of triangles seen edge-on can be anything.
+    if (!(major < MAX_FOOTPRINT_TEXELS)) {
+        f.axis = vec2(0.0);
+        f.lod = log2(edge);
+        f.samples = 1.0;
+        return;
+    }
+    float minor = max(min(length_x, length_y), major / frame.textures.x);
+    f.lod = log2(minor);
+    f.samples = clamp(ceil(major / max(minor, 1.0)), 1.0, frame.textures.x);
 }
 
-// White where the slot has no texture.
-vec4 sample_slot(material_block material, uint slot, texture_point point)
+footprint find_footprint(uint texture_number, texture_point point)
 {
-    if ((material.info.z & (1u << slot)) == 0u)
-        return vec4(1.0);
-    texture_block texture = textures[material.info.y + slot];
-    uint flags = texture.info.z;
-    bool second = (flags & TEXTURE_UV_SET_1) != 0u;
-    vec2 uv = second ? point.uv.zw : point.uv.xy;
+    uint bits = textures[texture_number].info.x;
+    bool second = (bits & TEXTURE_UV_SET_1) != 0u;
+    vec2 at = second ? point.uv.zw : point.uv.xy;
     vec2 dx = second ? point.dx.zw : point.dx.xy;
     vec2 dy = second ? point.dy.zw : point.dy.xy;
-    vec3 row_u = texture.uv_row_u.xyz;
-    vec3 row_v = texture.uv_row_v.xyz;
-    vec2 at = vec2(dot(row_u, vec3(uv, 1.0)), dot(row_v, vec3(uv, 1.0)));
+#if TEXTURE_TRANSFORMS
+    vec3 row_u = textures[texture_number].uv_row_u.xyz;
+    vec3 row_v = textures[texture_number].uv_row_v.xyz;
+    at = vec2(dot(row_u, vec3(at, 1.0)), dot(row_v, vec3(at, 1.0)));
     dx = vec2(dot(row_u.xy, dx), dot(row_v.xy, dx));
     dy = vec2(dot(row_u.xy, dy), dot(row_v.xy, dy));
-    float edge = float(texture.info.w);
-    if ((flags & TEXTURE_NEAREST) != 0u && max(length(dx), length(dy)) * edge < 1.0)
+#endif
+    footprint f;
+    float edge = float(1u << ((bits >> TEXTURE_EDGE_BIT) & 15u));
+    f.class_number = (bits >> TEXTURE_CLASS_BIT) & 15u;
+    set_filter(f, dx, dy, edge);
+    if ((bits & TEXTURE_NEAREST) != 0u && f.lod < 0.0)
         at = (floor(at * edge) + 0.5) / edge;
-    at.x = wrap_coordinate(at.x, (flags >> TEXTURE_WRAP_U_BIT) & 3u, edge);
-    at.y = wrap_coordinate(at.y, (flags >> TEXTURE_WRAP_V_BIT) & 3u, edge);
+    at.x = wrap_coordinate(at.x, (bits >> TEXTURE_WRAP_U_BIT) & 3u, edge);
+    at.y = wrap_coordinate(at.y, (bits >> TEXTURE_WRAP_V_BIT) & 3u, edge);
     // Far texture coordinates lose their fraction in the sampler's fixed point: keep them small.
     at -= floor(at * (1.0 / 64.0)) * 64.0;
-    return sample_class(texture.info.x, vec3(at, float(texture.info.y)), dx, dy);
+    f.at = vec3(at, float(bits >> TEXTURE_LAYER_BIT));
+    return f;
 }
+
+#if COLOR_CLASSES > 0
+vec4 sample_color(uint texture_number, texture_point point)
+{
+    footprint f = find_footprint(texture_number, point);
+    vec4 sum = vec4(0.0);
+    for (float i = 0.5; i < f.samples; i += 1.0)
+        sum += sample_color_class(f.class_number,
+                                  f.at + vec3(f.axis * (i / f.samples - 0.5), 0.0), f.lod);
+    return sum / f.samples;
+}
+#endif
+
+#if DATA_CLASSES > 0
+vec4 sample_data(uint texture_number, texture_point point)
+{
+    footprint f = find_footprint(texture_number, point);
+    vec4 sum = vec4(0.0);
+    for (float i = 0.5; i < f.samples; i += 1.0)
+        sum += sample_data_class(f.class_number,
+                                 f.at + vec3(f.axis * (i / f.samples - 0.5), 0.0), f.lod);
+    return sum / f.samples;
+}
+#endif
 #endif

@@ -4,60 +4,76 @@
 
 layout(std430, binding = BIND_SHADOW_VIEWS) readonly buffer shadow_view_storage
 {
-    // MAX_SHADOW_LAYERS of the scene, then MAX_VIEW_SHADOW_LAYERS cascades of this view.
     shadow_view_block shadow_views[];
 };
 
+// Layers of the scene's lamps, then those of the views' cascades.
 layout(binding = UNIT_SHADOW_MAP) uniform sampler2DArrayShadow shadow_map;
-layout(binding = UNIT_VIEW_SHADOW_MAP) uniform sampler2DArrayShadow view_shadow_map;
 
 const float PCF_RADIUS_TEXELS = 1.5;
 const float GOLDEN_ANGLE = 2.39996323;
 
-// Mean of comparisons on a Vogel disk around `at` (uv, layer, reference depth).
-float filtered_comparison(bool of_view, vec4 at)
+// Mean of comparisons on a Vogel disk around `at`: uv, layer, reference depth.
+float filtered_comparison(vec4 at)
 {
     uint taps = frame.options.z;
-    float texel = of_view ? 1.0 / float(textureSize(view_shadow_map, 0).x)
-                          : 1.0 / float(textureSize(shadow_map, 0).x);
+    float texel = 1.0 / float(textureSize(shadow_map, 0).x);
+    if (taps <= 1u)
+        return texture(shadow_map, at);
     float lit = 0.0;
+    float scale = PCF_RADIUS_TEXELS * texel * inversesqrt(float(taps));
     for (uint i = 0u; i < taps; i++) {
         float angle = float(i) * GOLDEN_ANGLE;
-        float radius = taps == 1u ? 0.0
-                                  : PCF_RADIUS_TEXELS * sqrt((float(i) + 0.5) / float(taps));
-        vec4 tap = at + vec4(vec2(cos(angle), sin(angle)) * (radius * texel), 0.0, 0.0);
-        lit += of_view ? texture(view_shadow_map, tap) : texture(shadow_map, tap);
+        vec2 offset = vec2(cos(angle), sin(angle)) * (scale * sqrt(float(i) + 0.5));
+        lit += texture(shadow_map, at + vec4(offset, 0.0, 0.0));
     }
     return lit / float(taps);
 }
 
-// Position in a shadow view: xy in [0, 1], z the reversed depth. `inside` tells whether it is seen.
-vec3 project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light,
-                       out bool inside)
+// How far to lift a point off its surface, in texels, against acne: more at grazing light.
+float offset_texels(vec3 normal, vec3 to_light)
 {
-    shadow_view_block view = shadow_views[view_number];
-    vec4 clip = view.clip_from_world * vec4(position, 1.0);
-    float texel = view.texel.x * (view.texel.w > 0.0 ? max(clip.w, 0.0) : 1.0);
     float cosine = clamp(dot(normal, to_light), 0.0, 1.0);
-    float offset = texel * (0.6 + 1.8 * sqrt(1.0 - cosine * cosine));
-    clip = view.clip_from_world * vec4(position + normal * offset, 1.0);
-    vec3 ndc = clip.xyz / max(clip.w, 1e-20);
-    vec2 uv = vec2(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
-    vec2 margin = vec2(3.0 / float(textureSize(shadow_map, 0).x));
-    inside = clip.w > 0.0 && all(greaterThan(uv, margin)) && all(lessThan(uv, 1.0 - margin));
-    return vec3(uv, ndc.z);
+    return 0.6 + 1.8 * sqrt(1.0 - cosine * cosine);
 }
 
-// Which cascade of the view a point falls into; frame.lights.w if none.
-uint find_cascade(vec3 position, vec3 normal, vec3 to_light, out vec3 at)
+bool is_inside(vec2 uv)
 {
-    for (uint i = 0u; i < frame.lights.w; i++) {
-        bool inside;
-        at = project_to_shadow(MAX_SHADOW_LAYERS + i, position, normal, to_light, inside);
-        if (inside)
-            return i;
+    float margin = 3.0 / float(textureSize(shadow_map, 0).x);
+    return all(greaterThan(uv, vec2(margin))) && all(lessThan(uv, vec2(1.0 - margin)));
+}
+
+// Position in a lamp's or sun's view: uv, layer, reversed depth. `inside` tells whether it is seen.
+vec4 project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light,
+                       out bool inside)
+{
+    mat4 clip_from_world = shadow_views[view_number].clip_from_world;
+    vec4 texel = shadow_views[view_number].texel;
+    vec4 clip = clip_from_world * vec4(position, 1.0);
+    float size = texel.x * (texel.w > 0.0 ? max(clip.w, 0.0) : 1.0);
+    clip += clip_from_world * vec4(normal * (size * offset_texels(normal, to_light)), 0.0);
+    vec3 ndc = clip.xyz / max(clip.w, 1e-20);
+    vec2 uv = vec2(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
+    inside = clip.w > 0.0 && is_inside(uv);
+    return vec4(uv, float(view_number), ndc.z);
+}
+
+// Refines a place in the sun's map of the whole scene to the smallest of the view's cascades that
+// holds it. All share the sun's axes, so a cascade is a scale and an offset. Returns its number,
+// frame.lights.w for none.
+uint refine_by_cascade(inout vec4 at)
+{
+    uint found = frame.lights.w;
+    vec4 from = at;
+    for (uint i = frame.lights.w; i-- > 0u;) {
+        vec4 scale = frame.cascade_scales[i];
+        vec3 place = from.xyw * scale.xyz + frame.cascade_offsets[i].xyz;
+        if (is_inside(place.xy)) {
+            at = vec4(place.xy, scale.w, place.z);
+            found = i;
+        }
     }
-    return frame.lights.w;
+    return found;
 }
 
 uint cube_face(vec3 direction)
@@ -76,19 +92,12 @@ float shadow_visibility(uvec4 shadow, vec3 origin, vec3 position, vec3 normal, v
 {
     if (shadow.x == NO_SHADOW)
         return 1.0;
-    vec3 at;
-    if (shadow.w != 0u) {
-        uint cascade = find_cascade(position, normal, to_light, at);
-        if (cascade < frame.lights.w)
-            return filtered_comparison(true, vec4(at.xy, float(cascade), at.z));
-    }
-    uint view_number = shadow.x;
-    if (shadow.y == 6u)
-        view_number += cube_face(position - origin);
+    uint view_number = shadow.x + (shadow.y == 6u ? cube_face(position - origin) : 0u);
     bool inside;
-    at = project_to_shadow(view_number, position, normal, to_light, inside);
+    vec4 at = project_to_shadow(view_number, position, normal, to_light, inside);
+    if (shadow.w != 0u)
+        refine_by_cascade(at);
+    float lit = filtered_comparison(at);
     // Cube faces overlap a little, so only spots and the sun end: beyond them nothing casts.
-    if (!inside && shadow.y != 6u)
-        return 1.0;
-    return filtered_comparison(false, vec4(at.xy, float(view_number), at.z));
+    return !inside && shadow.y != 6u ? 1.0 : lit;
 }

@@ -27,10 +27,10 @@
 #define UNIT_IDS              0
 #define UNIT_DEPTH            1
 #define UNIT_SHADOW_MAP       2
-#define UNIT_VIEW_SHADOW_MAP  3
 #define UNIT_ENVIRONMENT      4
-#define UNIT_MATERIAL_CLASSES 5
-#define MAX_TEXTURE_CLASSES   10
+#define UNIT_COLOR_CLASSES    5
+#define UNIT_DATA_CLASSES     10
+#define MAX_CLASSES_PER_SPACE 5
 #define UNIT_BACKGROUND       15
 
 // Work groups
@@ -49,7 +49,7 @@
 
 #define MAX_AREA_LIGHTS        16
 #define MAX_SHADOW_LAYERS      32
-#define MAX_VIEW_SHADOW_LAYERS 3
+#define MAX_CASCADES           3
 #define MAX_BLENDED_LAYERS     16
 #define BLENDED_PER_PIXEL      8
 
@@ -82,10 +82,16 @@
 #define TEXTURE_SPECULAR             6u
 #define TEXTURE_SPECULAR_COLOR       7u
 
-#define TEXTURE_NONE       0xffffffffu
+#define COLOR_TEXTURE_SLOTS 0x91u // base colour, emissive, specular colour
+
+// texture.info.x: flags, wrap modes (two bits each: 0 repeat, 1 clamp, 2 mirror), log2 of the edge,
+// class, layer
 #define TEXTURE_UV_SET_1   1u
 #define TEXTURE_NEAREST    2u
-#define TEXTURE_WRAP_U_BIT 2 // two bits each: 0 repeat, 1 clamp, 2 mirror
+#define TEXTURE_WRAP_U_BIT 2
 #define TEXTURE_WRAP_V_BIT 4
+#define TEXTURE_EDGE_BIT   8
+#define TEXTURE_CLASS_BIT  12
+#define TEXTURE_LAYER_BIT  16
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef VOXCAST_SHADERS_SHARED_BLOCKS_H
 #define VOXCAST_SHADERS_SHARED_BLOCKS_H
 
+#include "shared/bindings.h"
 #include "shared/types.h"
 
 // One frame of one view; std140.
@@ -14,10 +15,15 @@ struct frame_block {
     vec4 ray_dy;     // added per pixel downwards
     uvec4 size;      // rendered width, height; light tiles across, down
     uvec4 shown;     // shown width, height; row pitches of Y and of Cb, Cr in bytes
-    uvec4 lights;    // lights, area lights, words of a tile's light mask, view shadow layers
-    uvec4 options;   // debug view, shading model for PBR materials, shadow taps, tone map
-    vec4 display;    // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, unused
+    uvec4 lights;    // lights, area lights, words of a tile's light mask, cascades
+    uvec4 options;   // debug view, shadow view of the sun, shadow taps, tone map
+    vec4 display;    // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, 1 if all
+                     // materials are to be Blinn-Phong
     vec4 environment; // intensity, rotation about +Y, unused, unused
+    vec4 textures;    // most samples of an anisotropic look-up, unused, unused, unused
+    // From (u, v, depth) in the sun's view of the scene to each cascade, smallest first.
+    vec4 cascade_scales[MAX_CASCADES]; // w: layer of the shadow map
+    vec4 cascade_offsets[MAX_CASCADES];
 };
 
 // A placed primitive: one draw.
@@ -41,7 +47,7 @@ struct material_block {
 struct texture_block {
     vec4 uv_row_u; // u' = dot(row.xyz, (u, v, 1))
     vec4 uv_row_v;
-    uvec4 info; // class (array of one size), layer, flags, edge in texels
+    uvec4 info; // packed as TEXTURE_* of bindings.h say; unused, unused, unused
 };
 
 struct light_block {

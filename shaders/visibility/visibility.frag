@@ -2,12 +2,7 @@
 // LIST: instead appends the fragment to its pixel's list of transparent layers.
 #include "lib/material.glsl"
 
-layout(location = 0) flat in uint fragment_instance;
-
-layout(std430, binding = BIND_INSTANCES) readonly buffer instance_storage
-{
-    instance_block instances[];
-};
+layout(location = 0) flat in uvec2 fragment_numbers; // visibility id, material
 
 #if ALPHA_MASK
 layout(location = 1) in vec4 fragment_uv;
@@ -15,11 +10,12 @@ layout(location = 2) in float fragment_alpha;
 
 void test_alpha()
 {
-    material_block material = materials[instances[fragment_instance].info.y];
+    material_block material = materials[fragment_numbers.y];
     float alpha = material.base_color.a * fragment_alpha;
-#if TEXTURE_CLASSES > 0
+#if COLOR_CLASSES > 0
     texture_point point = texture_point(fragment_uv, dFdx(fragment_uv), dFdy(fragment_uv));
-    alpha *= sample_slot(material, TEXTURE_BASE_COLOR, point).a;
+    if ((material.info.z & (1u << TEXTURE_BASE_COLOR)) != 0u)
+        alpha *= sample_color(material.info.y + TEXTURE_BASE_COLOR, point).a;
 #endif
     if (alpha < material.emission.w)
         discard;
@@ -56,7 +52,7 @@ void main()
 #if ALPHA_MASK
     test_alpha();
 #endif
-    uint id = instances[fragment_instance].info.z + uint(gl_PrimitiveID) + 1u;
+    uint id = fragment_numbers.x;
 #if LIST
     append(id);
 #elif !SHADOW_VIEW

@@ -1,23 +1,20 @@
-// Places vertices. In: position (local, metres), instance id, texture coordinates. Out: clip space.
+// Places vertices. In: position (local, metres), texture coordinates, the draw's record. Out: clip
+// space.
 #include "lib/frame.glsl"
 
 layout(location = 0) in vec3 position_local;
-layout(location = 1) in uint instance;
-layout(location = 2) in vec4 uv;
+layout(location = 1) in vec4 uv;
+layout(location = 2) in vec4 world_row_x;
+layout(location = 3) in vec4 world_row_y;
+layout(location = 4) in vec4 world_row_z;
+layout(location = 5) in uvec4 numbers; // first visibility id, material, instance, -
+layout(location = 6) in float alpha;
+layout(location = 7) in uint triangle; // of the primitive, if this vertex is its first
 
-layout(std430, binding = BIND_INSTANCES) readonly buffer instance_storage
-{
-    instance_block instances[];
-};
-
-layout(location = 0) flat out uint fragment_instance;
+layout(location = 0) flat out uvec2 fragment_numbers; // visibility id, material
 #if ALPHA_MASK
 layout(location = 1) out vec4 fragment_uv;
 layout(location = 2) out float fragment_alpha;
-layout(std430, binding = BIND_VERTICES) readonly buffer vertex_storage
-{
-    float vertices[];
-};
 #endif
 
 #if SHADOW_VIEW
@@ -30,15 +27,17 @@ layout(location = 0) uniform uint shadow_view;
 
 void main()
 {
-    vec4 position_world = instances[instance].world_from_local * vec4(position_local, 1.0);
+    vec4 local = vec4(position_local, 1.0);
+    vec4 position_world =
+        vec4(dot(world_row_x, local), dot(world_row_y, local), dot(world_row_z, local), 1.0);
 #if SHADOW_VIEW
     gl_Position = shadow_views[shadow_view].clip_from_world * position_world;
 #else
     gl_Position = frame.clip_from_world * position_world;
 #endif
-    fragment_instance = instance;
+    fragment_numbers = uvec2(numbers.x + triangle, numbers.y);
 #if ALPHA_MASK
     fragment_uv = uv;
-    fragment_alpha = vertices[uint(gl_VertexID) * VERTEX_WORDS + 17u];
+    fragment_alpha = alpha;
 #endif
 }
