@@ -1,5 +1,5 @@
 import { mapDirection, mapPoint, unmapDirection } from './math/affine.js';
-import { add, subtract } from './math/vector.js';
+import { add, length, subtract } from './math/vector.js';
 import { Connection } from './net/connection.js';
 import { LightTab } from './panel/light_tab.js';
 import { MaterialTab } from './panel/material_tab.js';
@@ -265,13 +265,14 @@ export class App {
   #presented(/** @type {any} */ { header, decodeMs }) {
     this.#acknowledge(header);
     byId('waiting').hidden = true;
+    byId('stage').dataset.frame = String(header.frameId);
     this.overlay.pose = this.sender.poseOf(header.cameraRevision);
     this.overlay.aspect = header.width / header.height;
     this.overlay.draw();
     this.stats.takeFrame(header, decodeMs);
     // The canvas reaches the screen with the frame that the browser draws next.
-    requestAnimationFrame((at) => {
-      const ms = this.timer.present(header.editId, at);
+    requestAnimationFrame(() => {
+      const ms = this.timer.present(header.editId, performance.now());
       if (ms !== null) this.stats.takeEditToPhoton(ms);
     });
   }
@@ -303,7 +304,14 @@ export class App {
     const world = this.document.worldFromNode(hit.node);
     const anchorNode = unmapDirection(world, subtract(hit.position, world[3]));
     const lightId = this.document.find('node', hit.node)?.light ?? null;
-    this.selection.choose({ nodeId: hit.node, lightId, materialId: hit.material, hit, anchorNode });
+    const distance = length(subtract(hit.position, this.camera.pose.eye));
+    this.selection.choose({
+      nodeId: hit.node,
+      lightId,
+      materialId: hit.material,
+      hit: { ...hit, distance },
+      anchorNode,
+    });
   }
 
   /** Where the handle is: at the light, where the object was clicked, or at its origin. */

@@ -29,6 +29,9 @@ const DEGREES = 180 / Math.PI;
 
 const rounded = (/** @type {number} */ value) => Number(value.toPrecision(5));
 
+// The picker has 256 steps and cuts off what is between them.
+const pickerFromLinear = (/** @type {number} */ v) => (Math.round(255 * srgbFromLinear(v)) + 1e-3) / 255;
+
 /** How a type is shown: the value for people, and back. @type {Record<string, {show: Function, read: Function}>} */
 const CONVERSIONS = {
   plain: { show: (/** @type {any} */ v) => v, read: (/** @type {any} */ v) => v },
@@ -38,7 +41,7 @@ const CONVERSIONS = {
     read: (/** @type {number} */ v) => v / DEGREES,
   },
   color: {
-    show: (/** @type {number[]} */ v) => v.slice(0, 3).map(srgbFromLinear),
+    show: (/** @type {number[]} */ v) => v.slice(0, 3).map(pickerFromLinear),
     read: (/** @type {number[]} */ v) => v.map(linearFromSrgb),
   },
   quaternion: { show: toEulerDegrees, read: fromEulerDegrees },

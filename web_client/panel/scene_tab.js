@@ -42,8 +42,9 @@ export class SceneTab {
   /** The scene is another one, or nodes came or went. */
   rebuild() {
     const { data } = this.app.document;
-    const { nodes, triangles, lights, materials } = data.counts;
-    this.counts.textContent = `${nodes} nodes · ${triangles.toLocaleString('en')} triangles · ${materials} materials · ${lights} lights`;
+    const { nodes, lights, materials } = data;
+    const triangles = data.counts.triangles.toLocaleString('en');
+    this.counts.textContent = `${nodes.length} nodes · ${triangles} triangles · ${materials.length} materials · ${lights.length} lights`;
     this.tree.show(data.nodes);
     this.loader.showSource(data.source);
     this.#drawCameras();

@@ -153,9 +153,12 @@ export class StatsTab {
           'li',
           { class: off ? 'off' : '', title: reason || undefined },
           element('span', { class: 'name' }, wordsOf(name)),
-          element('span', { class: 'bar' }, element('span', { style: `width:${off ? 0 : (100 * value) / most}%` })),
-          element('small', {}, off ? 'skipped' : format(value)),
-          ...(off && reason ? [element('small', { class: 'reason' }, reason)] : []),
+          ...(off
+            ? [element('small', { class: 'reason' }, `skipped: ${reason || 'not needed'}`)]
+            : [
+                element('span', { class: 'bar' }, element('span', { style: `width:${(100 * value) / most}%` })),
+                element('small', {}, format(value)),
+              ]),
         ),
       ),
     );

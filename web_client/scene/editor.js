@@ -25,7 +25,7 @@ export class Editor {
     this.pending = new Map();
     /** @type {Map<string, number>} newest edit of each field that has no reply yet */
     this.underWay = new Map();
-    this.isScheduled = false;
+    this.isThrottled = false;
     // A field is stale in a broadcast while a newer edit of it is on its way.
     this.isStale = (
       /** @type {string} */ group,
@@ -45,15 +45,13 @@ export class Editor {
     const waiting = this.pending.get(key);
     const at = waiting?.at ?? performance.now();
     const merged = { group, id, set: { ...waiting?.set, ...set }, at };
-    if (!transient) {
+    if (!transient || !this.isThrottled) {
       this.pending.delete(key);
-      this.#send(merged, false);
-      return;
+      this.#send(merged, transient);
+    } else {
+      this.pending.set(key, merged);
     }
-    this.pending.set(key, merged);
-    if (this.isScheduled) return;
-    this.isScheduled = true;
-    requestAnimationFrame(() => this.#flush());
+    if (!this.isThrottled) this.#throttle();
   }
 
   /** @param {Record<string, any>} set @returns {Promise<any>} the new light's id and node */
@@ -88,11 +86,16 @@ export class Editor {
     return field in (this.pending.get(`${group}/${id}`)?.set ?? {});
   }
 
-  #flush() {
-    this.isScheduled = false;
-    const waiting = [...this.pending.values()];
-    this.pending.clear();
-    for (const edit of waiting) this.#send(edit, true);
+  /** Keeps what comes before the next animation frame until then. */
+  #throttle() {
+    this.isThrottled = true;
+    requestAnimationFrame(() => {
+      this.isThrottled = false;
+      const waiting = [...this.pending.values()];
+      this.pending.clear();
+      for (const edit of waiting) this.#send(edit, true);
+      if (waiting.length > 0) this.#throttle();
+    });
   }
 
   async #send(/** @type {Pending} */ { group, id, set, at }, /** @type {boolean} */ transient) {

@@ -15,8 +15,9 @@ export class CameraSender {
     this.revision = 0;
     /** @type {Map<number, import('../math/projection.js').CameraPose>} */
     this.poses = new Map();
-    this.isScheduled = false;
-    camera.addEventListener('changed', () => this.#schedule());
+    this.isThrottled = false;
+    this.isChanged = false;
+    camera.addEventListener('changed', () => this.#changed());
   }
 
   /** The pose of the frames that carry a camera revision. @param {number} revision */
@@ -29,12 +30,18 @@ export class CameraSender {
     this.camera.set(pose);
   }
 
-  #schedule() {
-    if (this.isScheduled) return;
-    this.isScheduled = true;
+  #changed() {
+    this.isChanged = true;
+    if (!this.isThrottled) this.#sendAndThrottle();
+  }
+
+  #sendAndThrottle() {
+    this.isChanged = false;
+    this.#send();
+    this.isThrottled = true;
     requestAnimationFrame(() => {
-      this.isScheduled = false;
-      this.#send();
+      this.isThrottled = false;
+      if (this.isChanged) this.#sendAndThrottle();
     });
   }
 

@@ -133,6 +133,8 @@ export class Overlay extends EventTarget {
   #drawHandle() {
     const origin = this.handle && this.#place(this.handle);
     this.handleLayer.style.display = origin ? '' : 'none';
+    // A light's icon is its own middle.
+    this.handleLayer.classList.toggle('at-light', this.chosenLight !== null);
     if (!origin || !this.pose || !this.handle) return;
     // Metres at that depth that make HANDLE_PX on the screen.
     const metres =
