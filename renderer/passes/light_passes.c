@@ -62,7 +62,7 @@ static bool environment_run(struct frame *frame, const struct pass *pass, struct
 
 const struct pass environment_pass = {
     .name = "environment",
-    .effects_used = EFFECT_BIT(EFFECT_BLINN_PHONG),
+    .effects_used = EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR),
     .use_count = 3,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},
@@ -73,7 +73,7 @@ const struct pass environment_pass = {
 
 static const char *direct_light_skip_reason(const struct frame *frame)
 {
-    if (!has(frame, EFFECT_LIGHTS))
+    if (!has(frame, EFFECT_PUNCTUAL_LIGHTS) && !has(frame, EFFECT_AREA_LIGHTS))
         return "no light in the scene";
     return shows_light(frame) ? NULL : "the debug view shows no light";
 }
@@ -95,8 +95,7 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
 
 const struct pass direct_light_pass = {
     .name = "direct_light",
-    .effects_used = EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES) |
-                    EFFECT_BIT(EFFECT_AREA_LIGHTS) | EFFECT_BIT(EFFECT_BLINN_PHONG),
+    .effects_used = DIRECT_LIGHT_EFFECTS,
     .use_count = 5,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

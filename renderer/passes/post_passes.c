@@ -61,7 +61,8 @@ static bool debug_view_run(struct frame *frame, const struct pass *pass, struct 
 
 const struct pass debug_view_pass = {
     .name = "debug_view",
-    .effects_used = EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES),
+    .effects_used = EFFECT_BIT(EFFECT_FLAT_SHADOWS) | EFFECT_BIT(EFFECT_CUBE_SHADOWS) |
+                    EFFECT_BIT(EFFECT_LIGHT_TILES),
     .use_count = 5,
     .uses = {{RESOURCE_IDS, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

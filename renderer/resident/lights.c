@@ -6,12 +6,7 @@
 #include "renderer/resident/resident.h"
 #include "renderer/scene/placement.h"
 
-// Cube faces and spots see a little more than they need, for the filter's taps at the rim.
-#define SHADOW_FACE_MARGIN  1.02f
 #define MAX_SPOT_SHADOW_FOV 2.9f // radians; a wider cone gets a cube
-
-// Nearest shadow caster of a lamp, relative to the scene's diagonal.
-#define SHADOW_NEAR_FRACTION 1e-4f
 
 struct light_builder {
     struct resident *resident;
@@ -140,6 +135,8 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
         return;
     block->shadow[0] = builder->layers;
     block->shadow[1] = needed;
+    resident->counts.flat_shadows += needed == 1;
+    resident->counts.cube_shadows += needed == 6;
     if (directional) {
         resident_directional_view(resident, block->direction, resident->bounds_min,
                                   resident->bounds_max, &builder->views[builder->layers++]);
@@ -166,6 +163,7 @@ static void add_area_light_shadow(struct light_builder *builder, struct area_lig
         return;
     light->shadow[0] = builder->layers;
     light->shadow[1] = 6;
+    builder->resident->counts.cube_shadows++;
     // A little before the emitter, so that it does not shade itself.
     vec3 origin;
     float lift = 1e-3f * sqrtf(light->radiance[3]);
@@ -208,6 +206,8 @@ bool resident_upload_lights(struct resident *resident)
         struct resident_counts *counts = &resident->counts;
         counts->lights = 0;
         counts->ranged_lights = 0;
+        counts->flat_shadows = 0;
+        counts->cube_shadows = 0;
         resident->directional_light = NO_SHADOW;
         counts->area_lights = resident_find_area_lights(resident, area_lights);
         // Shadow maps go to suns first, then to planar emitters, then to lamps as listed.

@@ -10,7 +10,10 @@
 #include "shared/bindings.h"
 #include "shared/blocks.h"
 
-#define SHADOW_MAP_EDGE   2048u
+#define SHADOW_MAP_EDGE 2048u
+// Nearest shadow caster of a lamp, relative to the scene's diagonal.
+#define SHADOW_NEAR_FRACTION 1e-4f
+
 #define MAX_VIEW_CASCADES (RENDERER_MAX_VIEWS * MAX_CASCADES)
 
 // Draws are sorted into groups of one kind and one face culling.
@@ -47,10 +50,14 @@ struct resident_counts {
     uint32_t ranged_lights;
     uint32_t area_lights;
     uint32_t shadow_layers;
+    uint32_t flat_shadows;       // lights with one view
+    uint32_t cube_shadows;       // lights with six
+    uint32_t colored_primitives; // with vertex colours other than white
     uint32_t textured_materials; // in use by a visible instance; likewise below
     uint32_t masked_materials;
     uint32_t transparent_materials;
     uint32_t blinn_phong_materials;
+    uint32_t specular_materials;
 };
 
 // Pictures of one colour space: an array per edge, and where each of the scene's images went.
@@ -91,6 +98,7 @@ struct resident {
     struct gpu_buffer *materials;
     struct gpu_buffer *texture_blocks;
     bool texture_transforms;                // any texture has a KHR_texture_transform of its own
+    bool second_uv_set;                     // any texture reads the second set of coordinates
     struct texture_space texture_spaces[2]; // sRGB colour, linear data
 
     struct gpu_buffer *lights;

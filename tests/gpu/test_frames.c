@@ -114,8 +114,9 @@ static void test_effects_follow_the_scene(void **state)
     test_look_down_z(&params, 3.0f);
     draw_and_drop(renderer, view, &params);
     static const char *const names[] = {
-        "textures",    "alpha_mask",  "lights",      "area_lights",  "shadows",
-        "light_tiles", "blinn_phong", "environment", "transparency", "auto_exposure"};
+        "textures",     "alpha_mask",   "punctual_lights", "specular",     "vertex_colors",
+        "flat_shadows", "cube_shadows", "area_lights",     "shadows",      "light_tiles",
+        "blinn_phong",  "environment",  "transparency",    "auto_exposure"};
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
         assert_false(effect_is_on(renderer, view, names[i]));
     assert_true(pass_ran(renderer, view, "emission"));
@@ -125,13 +126,13 @@ static void test_effects_follow_the_scene(void **state)
     scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
     uint32_t id = scene_add_light(scene, &light, (float[3]){0, 0, 2}, (float[3]){0, 0, -1});
     draw_and_drop(renderer, view, &params);
-    assert_true(effect_is_on(renderer, view, "lights"));
+    assert_true(effect_is_on(renderer, view, "punctual_lights"));
     assert_true(effect_is_on(renderer, view, "shadows"));
     assert_false(effect_is_on(renderer, view, "light_tiles"));
     assert_false(pass_ran(renderer, view, "emission"));
     scene_remove_light(scene, id);
     draw_and_drop(renderer, view, &params);
-    assert_false(effect_is_on(renderer, view, "lights"));
+    assert_false(effect_is_on(renderer, view, "punctual_lights"));
     assert_false(effect_is_on(renderer, view, "shadows"));
 
     struct scene_environment environment = {
@@ -153,6 +154,8 @@ static void test_effects_follow_the_scene(void **state)
     scene_destroy(&scene);
 }
 
+// Code that is left out may let a compiler round sums otherwise: 0.01 % is far below one step of a
+// displayed pixel.
 static void test_left_out_effects_change_no_pixel(void **state)
 {
     (void)state;
@@ -167,7 +170,8 @@ static void test_left_out_effects_change_no_pixel(void **state)
         params.settings.force_all_effects = true;
         struct test_picture forced = test_draw_linear(scene, &params);
         for (size_t j = 0; j < (size_t)planned.width * planned.height * 4; j++)
-            if (planned.pixels[j] != forced.pixels[j])
+            if (fabsf(planned.pixels[j] - forced.pixels[j]) >
+                1e-5f + 1e-4f * fabsf(forced.pixels[j]))
                 fail_msg("%s: value %zu is %g planned and %g forced", scene_builtin_name(i), j,
                          (double)planned.pixels[j], (double)forced.pixels[j]);
         free(planned.pixels);
