@@ -44,8 +44,9 @@ export async function openClient(page, daemon) {
   await untilStill(page);
 }
 
-/** Waits until the picture has not changed for `ms`. */
+/** Waits until this page's edits are shown and the picture has not changed for `ms`. */
 export async function untilStill(page, ms = 500) {
+  await page.waitForFunction(() => globalThis.voxcast.timer.waiting.size === 0);
   const frame = () => page.locator('#stage').getAttribute('data-frame');
   let last;
   do {

@@ -48,7 +48,8 @@ describe('edits', () => {
     await untilStill(page);
     const before = await pixels(page);
     await setParameter(ours.page, 'light.intensity', 2);
-    await untilStill(page);
+    await untilStill(ours.page);
+    await untilStill(page, 1000);
     assert.ok(difference(before, await pixels(page)) > 5);
     const shown = page.locator('[data-parameter="light.intensity"] input');
     assert.equal(await shown.inputValue(), '2');

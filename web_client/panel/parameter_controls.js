@@ -75,10 +75,11 @@ function addControl(/** @type {any} */ gui, /** @type {Parameter} */ parameter, 
     const next = read(value);
     target.set(name, type === 'color_alpha' ? [...next, target.get(name)[3]] : next, transient);
   };
+  const isChosen = ['bool', 'enum', 'string'].includes(type); // at once, not by dragging
   let isChanging = false;
   controller.onChange((/** @type {any} */ value) => {
     isChanging = true;
-    if (parameter.live) send(value, true);
+    if (parameter.live && !isChosen) send(value, true);
   });
   controller.onFinishChange((/** @type {any} */ value) => {
     send(value, false);

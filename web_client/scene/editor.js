@@ -1,7 +1,9 @@
 import { RpcError } from '../net/rpc_error.js';
 
+const LONGEST_PHOTON_MS = 5000;
+
 /** @typedef {import('../net/connection.js').Connection} Connection */
-/** @typedef {{group: string, id: number | undefined, set: Record<string, any>, at: number}} Pending */
+/** @typedef {{group: string, id: number | undefined, set: Record<string, any>, at: number | null}} Pending */
 
 /**
  * Sends edits: what is dragged at most once per animation frame, marked transient, and what is
@@ -40,10 +42,12 @@ export class Editor {
    * @param {boolean} transient true while dragging
    */
   update(group, id, set, transient) {
-    this.document.assign(group, id, set);
     const key = `${group}/${id}`;
     const waiting = this.pending.get(key);
-    const at = waiting?.at ?? performance.now();
+    // An edit that settles what is there already changes no picture: it is not timed.
+    const now = this.#isNews(group, id, set) ? performance.now() : null;
+    this.document.assign(group, id, set);
+    const at = waiting?.at ?? now;
     const merged = { group, id, set: { ...waiting?.set, ...set }, at };
     if (!transient || !this.isThrottled) {
       this.pending.delete(key);
@@ -78,6 +82,17 @@ export class Editor {
     this.underWay.clear();
   }
 
+  #isNews(
+    /** @type {string} */ group,
+    /** @type {number | undefined} */ id,
+    /** @type {Record<string, any>} */ set,
+  ) {
+    const item = this.document.find(group, id) ?? {};
+    return Object.entries(set).some(
+      ([field, value]) => JSON.stringify(item[field]) !== JSON.stringify(value),
+    );
+  }
+
   #isPending(
     /** @type {string} */ group,
     /** @type {number | undefined} */ id,
@@ -108,13 +123,18 @@ export class Editor {
     for (const key of keys) if (this.underWay.get(key) === editId) this.underWay.delete(key);
   }
 
-  /** @param {string} method @param {object} params @param {number} [at] when the user acted */
-  async #request(method, params, at) {
+  /**
+   * @param {string} method @param {object} params
+   * @param {number | null} [at] when the user acted; null: not to be timed
+   */
+  async #request(method, params, at = performance.now()) {
     const editId = ++this.lastEditId;
-    this.timer.begin(editId, at);
+    if (at !== null) this.timer.begin(editId, at);
     try {
       const result = await this.connection.call(method, { ...params, edit_id: editId });
       if ('superseded_by' in result || result.method === null) this.timer.drop(editId);
+      // Not every edit is seen: a name, or a light that is off.
+      else setTimeout(() => this.timer.drop(editId), LONGEST_PHOTON_MS);
       return result;
     } catch (error) {
       this.timer.drop(editId);

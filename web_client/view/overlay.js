@@ -6,6 +6,7 @@ import { add, scale, subtract } from '../math/vector.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
 const HANDLE_PX = 84;
+const MIDDLE_PX = 17;
 const AXES = /** @type {{name: string, direction: Vector}[]} */ ([
   { name: 'x', direction: [1, 0, 0] },
   { name: 'y', direction: [0, 1, 0] },
@@ -142,12 +143,15 @@ export class Overlay extends EventTarget {
     for (const { direction, group, hit, line, tip } of this.handleParts.axes) {
       const end = this.#place(add(this.handle, scale(direction, metres)));
       // An axis that points at the eye cannot be dragged along.
-      const isShort = !end || Math.hypot(end.x - origin.x, end.y - origin.y) < 14;
+      const long = end ? Math.hypot(end.x - origin.x, end.y - origin.y) : 0;
+      const isShort = long < 2 * MIDDLE_PX;
       /** @type {SVGElement} */ (group).style.display = isShort ? 'none' : '';
       if (!end || isShort) continue;
+      // The middle belongs to the square, or to the light's icon.
+      const begin = MIDDLE_PX / long;
       for (const part of [hit, line]) {
-        part.setAttribute('x1', String(origin.x));
-        part.setAttribute('y1', String(origin.y));
+        part.setAttribute('x1', String(origin.x + (end.x - origin.x) * begin));
+        part.setAttribute('y1', String(origin.y + (end.y - origin.y) * begin));
         part.setAttribute('x2', String(end.x));
         part.setAttribute('y2', String(end.y));
       }
