@@ -7,6 +7,8 @@
 // Each fills an empty scene. False when memory ends.
 bool builtin_build_cornell(struct scene *scene);
 bool builtin_build_cornell_objects(struct scene *scene);
+bool builtin_build_atrium(struct scene *scene);
+bool builtin_build_atrium_lights(struct scene *scene);
 bool builtin_build_furnace(struct scene *scene);
 bool builtin_build_material_grid(struct scene *scene);
 
