@@ -395,6 +395,11 @@ bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, 
     return ray_scene_intersect(renderer->ray_scene, camera->eye, direction, FLT_MAX, out_hit);
 }
 
+const char *renderer_get_shader_dir(const struct renderer *renderer)
+{
+    return gpu_get_shader_dir(renderer->gpu);
+}
+
 uint32_t renderer_poll_shaders(struct renderer *renderer, struct error *out_error)
 {
     return gpu_programs_reload_changed(renderer->gpu, out_error);

@@ -144,6 +144,9 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
 bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, uint32_t width,
                    uint32_t height, float x, float y, struct ray_hit *out_hit);
 
+// Folder that the shaders are read from: watch its files to know when to poll.
+const char *renderer_get_shader_dir(const struct renderer *renderer);
+
 // Reloads changed shaders if watching; cheap. Returns how many programs were rebuilt; when one
 // fails, the last good one stays, the message is logged and put into `out_error`.
 uint32_t renderer_poll_shaders(struct renderer *renderer, struct error *out_error);

@@ -51,8 +51,9 @@ struct render_thread {
     struct edit_log log;
 
     struct scene_loader *loader;
-    struct file_watch *watch;
-    char *load_source; // of the load under way
+    struct file_watch *watch;        // of the scene's files
+    struct file_watch *shader_watch; // wakes the thread, so that an idle daemon reloads too
+    char *load_source;               // of the load under way
     char load_label[256];
     struct rpc_id load_id;   // who asked; "" for nobody
     uint32_t load_client_id; // 0: start or hot reload

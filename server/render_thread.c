@@ -1,5 +1,6 @@
 #include "server/render_thread.h"
 
+#include <glob.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -147,6 +148,19 @@ static void turn(struct render_thread *thread)
         mailbox_wait(thread->params.mailbox, deadline_us);
 }
 
+static void watch_shaders(struct render_thread *thread)
+{
+    char *pattern = NULL;
+    glob_t files = {0};
+    if (!thread->shader_watch ||
+        asprintf(&pattern, "%s/*/*", renderer_get_shader_dir(thread->renderer)) < 0)
+        return;
+    if (glob(pattern, 0, NULL, &files) == 0)
+        file_watch_set_files(thread->shader_watch, files.gl_pathv, (uint32_t)files.gl_pathc);
+    globfree(&files);
+    free(pattern);
+}
+
 static bool open_renderer(struct render_thread *thread)
 {
     struct error error = {""};
@@ -167,6 +181,7 @@ static bool open_renderer(struct render_thread *thread)
     snprintf(thread->status.gl_renderer, sizeof(thread->status.gl_renderer), "%s",
              info->gl_renderer);
     pthread_mutex_unlock(&thread->status_mutex);
+    watch_shaders(thread);
     return true;
 }
 
@@ -198,9 +213,11 @@ struct render_thread *render_thread_start(const struct render_thread_params *par
     pthread_mutex_init(&thread->status_mutex, NULL);
     thread->loader = scene_loader_create(wake, thread);
     thread->watch = file_watch_create(wake, thread);
+    thread->shader_watch = file_watch_create(wake, thread);
     if (!thread->loader || pthread_create(&thread->thread, NULL, run, thread) != 0) {
         scene_loader_destroy(&thread->loader);
         file_watch_destroy(&thread->watch);
+        file_watch_destroy(&thread->shader_watch);
         pthread_mutex_destroy(&thread->status_mutex);
         free(thread);
         return NULL;
@@ -218,6 +235,7 @@ void render_thread_destroy(struct render_thread **thread)
     pthread_join(t->thread, NULL);
     scene_loader_destroy(&t->loader);
     file_watch_destroy(&t->watch);
+    file_watch_destroy(&t->shader_watch);
     edit_log_clear(&t->log);
     free(t->animations);
     free(t->load_source);

@@ -190,11 +190,6 @@ void gpu_programs_watch(struct gpu *gpu)
         watch_folder(gpu, folders[i]);
 }
 
-int gpu_programs_watch_fd(const struct gpu *gpu)
-{
-    return gpu->programs ? gpu->programs->watch_fd : -1;
-}
-
 static void mark_stale(struct gpu_program_library *library, const struct inotify_event *event)
 {
     const char *folder = "";

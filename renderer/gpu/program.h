@@ -14,9 +14,6 @@ const struct gpu_program *gpu_program_get(struct gpu *gpu, const char *path, con
 // fails keeps its last good build. Returns the number rebuilt; failures go to `out_error`.
 uint32_t gpu_programs_reload_changed(struct gpu *gpu, struct error *out_error);
 
-// Descriptor that turns readable when a shader file changes, or -1.
-int gpu_programs_watch_fd(const struct gpu *gpu);
-
 // Starts watching the shader folder.
 void gpu_programs_watch(struct gpu *gpu);
 

@@ -6,22 +6,22 @@
 #define BIND_FRAME 0
 
 // Shader storage blocks
-#define BIND_INSTANCES     0
-#define BIND_ID_BLOCKS     1
-#define BIND_VERTICES      2
-#define BIND_INDICES       3
-#define BIND_MATERIALS     4
-#define BIND_TEXTURES      5
-#define BIND_LIGHTS        6
-#define BIND_AREA_LIGHTS   7
-#define BIND_SHADOW_VIEWS  8
-#define BIND_GBUFFER       9
-#define BIND_RADIANCE      10
-#define BIND_LIGHT_MASKS   11
-#define BIND_OUTPUT        12
-#define BIND_EXPOSURE      13
-#define BIND_FRAGMENTS     14
-#define BIND_ENVIRONMENT   15
+#define BIND_INSTANCES    0
+#define BIND_ID_BLOCKS    1
+#define BIND_VERTICES     2
+#define BIND_INDICES      3
+#define BIND_MATERIALS    4
+#define BIND_TEXTURES     5
+#define BIND_LIGHTS       6
+#define BIND_AREA_LIGHTS  7
+#define BIND_SHADOW_VIEWS 8
+#define BIND_GBUFFER      9
+#define BIND_RADIANCE     10
+#define BIND_LIGHT_MASKS  11
+#define BIND_OUTPUT       12
+#define BIND_EXPOSURE     13
+#define BIND_FRAGMENTS    14
+#define BIND_ENVIRONMENT  15
 
 // Texture units
 #define UNIT_IDS              0
@@ -34,10 +34,10 @@
 #define UNIT_BACKGROUND       15
 
 // Work groups
-#define GROUP_EDGE       8
-#define LIGHT_TILE_EDGE  16
-#define LINEAR_GROUP     64
-#define HISTOGRAM_BINS   128
+#define GROUP_EDGE      8
+#define LIGHT_TILE_EDGE 16
+#define LINEAR_GROUP    64
+#define HISTOGRAM_BINS  128
 
 // A visibility id is 1 + (block * 2^ID_BLOCK_BITS + triangle in block): 0 is the background.
 #define ID_BLOCK_BITS 7
@@ -50,11 +50,11 @@
 // Cube faces and spots see a little more than they need, for the filter's taps at the rim.
 #define SHADOW_FACE_MARGIN 1.02f
 
-#define MAX_AREA_LIGHTS        16
-#define MAX_SHADOW_LAYERS      32
-#define MAX_CASCADES           3
-#define MAX_BLENDED_LAYERS     16
-#define BLENDED_PER_PIXEL      8
+#define MAX_AREA_LIGHTS    16
+#define MAX_SHADOW_LAYERS  32
+#define MAX_CASCADES       3
+#define MAX_BLENDED_LAYERS 16
+#define BLENDED_PER_PIXEL  8
 
 // instance.info.w and material flags
 #define INSTANCE_MIRRORED 1u
@@ -75,15 +75,15 @@
 #define MATERIAL_TEXTURED     32u
 #define MATERIAL_IOR_ONE      64u // no dielectric reflection at any angle
 
-#define TEXTURE_SLOTS                8
-#define TEXTURE_BASE_COLOR           0u
-#define TEXTURE_METALLIC_ROUGHNESS   1u
-#define TEXTURE_NORMAL               2u
-#define TEXTURE_OCCLUSION            3u
-#define TEXTURE_EMISSIVE             4u
-#define TEXTURE_TRANSMISSION         5u
-#define TEXTURE_SPECULAR             6u
-#define TEXTURE_SPECULAR_COLOR       7u
+#define TEXTURE_SLOTS              8
+#define TEXTURE_BASE_COLOR         0u
+#define TEXTURE_METALLIC_ROUGHNESS 1u
+#define TEXTURE_NORMAL             2u
+#define TEXTURE_OCCLUSION          3u
+#define TEXTURE_EMISSIVE           4u
+#define TEXTURE_TRANSMISSION       5u
+#define TEXTURE_SPECULAR           6u
+#define TEXTURE_SPECULAR_COLOR     7u
 
 #define COLOR_TEXTURE_SLOTS 0x91u // base colour, emissive, specular colour
 

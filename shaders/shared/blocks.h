@@ -8,17 +8,17 @@
 // One frame of one view; std140.
 struct frame_block {
     mat4 clip_from_world;
-    vec4 eye;        // world; w: distance of the near plane
-    vec4 forward;    // unit
-    vec4 ray_corner; // direction through the top left corner of pixel (0, 0), forward part 1
-    vec4 ray_dx;     // added per pixel to the right
-    vec4 ray_dy;     // added per pixel downwards
-    uvec4 size;      // rendered width, height; light tiles across, down
-    uvec4 shown;     // shown width, height; row pitches of Y and of Cb, Cr in bytes
-    uvec4 lights;    // lights, area lights, words of a tile's light mask, cascades
-    uvec4 options;   // debug view, shadow view of the sun, shadow taps, tone map
-    vec4 display;    // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, 1 if all
-                     // materials are to be Blinn-Phong
+    vec4 eye;         // world; w: distance of the near plane
+    vec4 forward;     // unit
+    vec4 ray_corner;  // direction through the top left corner of pixel (0, 0), forward part 1
+    vec4 ray_dx;      // added per pixel to the right
+    vec4 ray_dy;      // added per pixel downwards
+    uvec4 size;       // rendered width, height; light tiles across, down
+    uvec4 shown;      // shown width, height; row pitches of Y and of Cb, Cr in bytes
+    uvec4 lights;     // lights, area lights, words of a tile's light mask, cascades
+    uvec4 options;    // debug view, shadow view of the sun, shadow taps, tone map
+    vec4 display;     // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, 1 if all
+                      // materials are to be Blinn-Phong
     vec4 environment; // intensity, rotation about +Y, unused, unused
     vec4 textures;    // most samples of an anisotropic look-up, near plane of lamps' shadow views,
                       // unused, unused
@@ -37,9 +37,9 @@ struct instance_block {
 
 struct material_block {
     vec4 base_color;
-    vec4 emission; // cd/m^2; w: alpha cut-off
-    vec4 surface;  // metallic, roughness, normal scale, occlusion strength
-    vec4 dielectric; // F0 from IOR, specular weight, transmission, thickness in metres
+    vec4 emission;       // cd/m^2; w: alpha cut-off
+    vec4 surface;        // metallic, roughness, normal scale, occlusion strength
+    vec4 dielectric;     // F0 from IOR, specular weight, transmission, thickness in metres
     vec4 specular_color; // w: attenuation distance in metres, 0 none
     vec4 attenuation_color;
     uvec4 info; // flags, first texture, mask of texture slots in use, unused

@@ -19,14 +19,12 @@ static const struct {
     const float *reflectance;
     float corners[4][3];
 } room[ROOM_PARTS] = {
-    [FLOOR] = {"floor",
-               white,
-               {{552.8f, 0, 0}, {0, 0, 0}, {0, 0, 559.2f}, {549.6f, 0, 559.2f}}},
+    [FLOOR] = {"floor", white, {{552.8f, 0, 0}, {0, 0, 0}, {0, 0, 559.2f}, {549.6f, 0, 559.2f}}},
     [CEILING] = {"ceiling", white, {{0}}}, // cut around the lamp
-    [BACK_WALL] = {"back wall",
-                   white,
-                   {{549.6f, 0, 559.2f}, {0, 0, 559.2f}, {0, 548.8f, 559.2f},
-                    {556, 548.8f, 559.2f}}},
+    [BACK_WALL] =
+        {"back wall",
+         white,
+         {{549.6f, 0, 559.2f}, {0, 0, 559.2f}, {0, 548.8f, 559.2f}, {556, 548.8f, 559.2f}}},
     [GREEN_WALL] = {"right wall (green)",
                     green,
                     {{0, 0, 559.2f}, {0, 0, 0}, {0, 548.8f, 0}, {0, 548.8f, 559.2f}}},
