@@ -14,6 +14,12 @@ static const struct builtin_scene {
 } builtin_scenes[] = {
     {"cornell", "the Cornell box by its published measurements, lit by its lamp",
      builtin_build_cornell},
+    {"cornell-objects", "metal, glass, gloss and roughness in the Cornell box",
+     builtin_build_cornell_objects},
+    {"atrium", "a palace court in the sun: arcades, curtains, plants", builtin_build_atrium},
+    {"atrium-lights", "the same at dusk with 256 lanterns", builtin_build_atrium_lights},
+    {"furnace", "a white furnace: everything must look the same", builtin_build_furnace},
+    {"material-grid", "spheres by roughness, metalness and colour", builtin_build_material_grid},
 };
 
 #define BUILTIN_COUNT (sizeof(builtin_scenes) / sizeof(builtin_scenes[0]))

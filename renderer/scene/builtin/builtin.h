@@ -4,8 +4,13 @@
 
 #include "renderer/scene/scene.h"
 
-// Fills an empty scene. False when memory ends.
+// Each fills an empty scene. False when memory ends.
 bool builtin_build_cornell(struct scene *scene);
+bool builtin_build_cornell_objects(struct scene *scene);
+bool builtin_build_atrium(struct scene *scene);
+bool builtin_build_atrium_lights(struct scene *scene);
+bool builtin_build_furnace(struct scene *scene);
+bool builtin_build_material_grid(struct scene *scene);
 
 // The walls and the lamp of the Cornell box, for scenes set in it.
 bool builtin_add_cornell_room(struct scene *scene);

@@ -1,0 +1,136 @@
+// Four objects in the Cornell room, one each of polished metal, clear glass, glossy lacquer and
+// rough stone, and a dim warm lamp to move about.
+#include <math.h>
+
+#include "renderer/scene/builtin/builtin.h"
+#include "renderer/scene/builtin/builtin_shapes.h"
+
+#define TEAPOT_SCALE      0.038f // 248 mm from handle to spout
+#define GLASS_RADIUS_M    0.08f
+#define TORUS_RING_M      0.05f
+#define TORUS_TUBE_M      0.022f
+#define STONE_HALF_EDGE_M 0.07f
+
+struct object {
+    const char *name;
+    struct scene_material material;
+    float place[2]; // x and z of the shape's origin, metres; it stands on the floor
+    float turn_rad;
+    void (*add)(struct mesh_builder *builder);
+};
+
+static void add_teapot(struct mesh_builder *builder)
+{
+    mesh_builder_add_teapot(builder, TEAPOT_SCALE, 14);
+}
+
+static void add_glass(struct mesh_builder *builder)
+{
+    mesh_builder_add_sphere(builder, (float[3]){0, 0, 0}, GLASS_RADIUS_M, 64, 32);
+}
+
+static void add_torus(struct mesh_builder *builder)
+{
+    mesh_builder_add_torus(builder, TORUS_RING_M, TORUS_TUBE_M, 64, 28);
+}
+
+static double signed_power(double base, double exponent)
+{
+    return copysign(pow(fabs(base), exponent), base);
+}
+
+// A superellipsoid between cube and ball, with shallow dents as of hewn stone.
+static void stone_position(const void *context, double u, double v, double out_position[3])
+{
+    (void)context;
+    const double squareness = 0.45;
+    double turn = 2.0 * M_PI * (u - floor(u)), latitude = M_PI * (v - 0.5);
+    double ring = v <= 0.0 || v >= 1.0 ? 0.0 : pow(cos(latitude), squareness);
+    double x = ring * signed_power(sin(turn), squareness);
+    double y = signed_power(sin(latitude), squareness);
+    double z = ring * signed_power(cos(turn), squareness);
+    double dents = sin(5.1 * x + 1.0) * sin(4.3 * y + 2.0) * sin(4.7 * z + 0.5) +
+                   0.5 * sin(9.7 * x + 3.1 * y) * sin(8.3 * z + 2.9 * y + 1.7);
+    double size = STONE_HALF_EDGE_M * (0.97 + 0.035 * dents);
+    out_position[0] = size * x;
+    out_position[1] = size * y;
+    out_position[2] = size * z;
+}
+
+static void add_stone(struct mesh_builder *builder)
+{
+    struct surface_params params = {
+        .position = stone_position,
+        .columns = 96,
+        .rows = 48,
+        .texture_size = {0.4f, -0.2f},
+    };
+    mesh_builder_add_surface(builder, &params);
+}
+
+static void describe_objects(struct object objects[4])
+{
+    struct object *teapot = &objects[0], *glass = &objects[1];
+    struct object *torus = &objects[2], *stone = &objects[3];
+    *teapot = (struct object){"copper teapot", .place = {-0.1f, -0.11f}, .turn_rad = -0.45f,
+                              .add = add_teapot};
+    *glass = (struct object){"glass ball", .place = {0.125f, 0.115f}, .add = add_glass};
+    *torus = (struct object){"lacquered ring", .place = {-0.115f, 0.125f}, .add = add_torus};
+    *stone =
+        (struct object){"rough stone", .place = {0.15f, -0.1f}, .turn_rad = 0.4f, .add = add_stone};
+    for (int i = 0; i < 4; i++)
+        scene_material_init(&objects[i].material, objects[i].name);
+    teapot->material.double_sided = true; // spout and lid gap are open
+    teapot->material.roughness = 0.12f;
+    glm_vec3_copy((vec3){0.955f, 0.638f, 0.538f}, teapot->material.base_color);
+    glass->material.metallic = 0.0f;
+    glass->material.roughness = 0.0f;
+    glass->material.transmission = 1.0f;
+    glass->material.thickness_m = 2.0f * GLASS_RADIUS_M;
+    torus->material.metallic = 0.0f;
+    torus->material.roughness = 0.15f;
+    glm_vec3_copy((vec3){0.02f, 0.1f, 0.45f}, torus->material.base_color);
+    stone->material.metallic = 0.0f;
+    stone->material.roughness = 1.0f;
+    glm_vec3_copy((vec3){0.55f, 0.47f, 0.36f}, stone->material.base_color);
+}
+
+static bool add_object(struct scene *scene, const struct object *object)
+{
+    struct mesh_builder builder;
+    mesh_builder_init(&builder);
+    object->add(&builder);
+    uint32_t material = scene_add_material(scene, &object->material);
+    uint32_t mesh = mesh_builder_commit_mesh(&builder, scene, object->name, material);
+    if (mesh == SCENE_NONE)
+        return false;
+    uint32_t node = builtin_add_mesh_node(scene, object->name, mesh);
+    if (node == SCENE_NONE)
+        return false;
+    float *place = scene->nodes[node].translation;
+    place[0] = object->place[0];
+    place[1] = -scene->primitives[scene->meshes[mesh].primitive_first].bounds_min[1];
+    place[2] = object->place[1];
+    glm_quatv(scene->nodes[node].rotation, object->turn_rad, (vec3){0, 1, 0});
+    return true;
+}
+
+bool builtin_build_cornell_objects(struct scene *scene)
+{
+    struct object objects[4];
+    describe_objects(objects);
+    if (!builtin_add_cornell_room(scene))
+        return false;
+    for (int i = 0; i < 4; i++)
+        if (!add_object(scene, &objects[i]))
+            return false;
+    struct scene_light lamp;
+    scene_light_init(&lamp, SCENE_LIGHT_POINT, "reading light");
+    lamp.intensity = 0.15f;
+    glm_vec3_copy((vec3){1.0f, 0.72f, 0.42f}, lamp.color);
+    return scene_add_light(scene, &lamp, (float[3]){0.02f, 0.3f, 0.16f}, (float[3]){0, -1, 0}) !=
+               SCENE_NONE &&
+           scene_add_camera(scene, "close", (float[3]){0.0f, 0.24f, 0.75f},
+                            (float[3]){0.0f, 0.1f, -0.03f}, (float[3]){0, 1, 0},
+                            0.55f) != SCENE_NONE;
+}
