@@ -10,6 +10,7 @@ import { EditTimer } from './scene/edit_timer.js';
 import { Editor } from './scene/editor.js';
 import { SceneDocument } from './scene/scene_document.js';
 import { Selection } from './scene/selection.js';
+import { DarkHint } from './ui/dark_hint.js';
 import { bindTabs } from './ui/tabs.js';
 import { Toasts } from './ui/toasts.js';
 import { TokenDialog } from './ui/token_dialog.js';
@@ -60,6 +61,7 @@ export class App {
     this.material = new MaterialTab(byId('panel-material'), this);
     this.viewTab = new ViewTab(byId('panel-view'), this);
     this.stats = new StatsTab(byId('panel-stats'), this);
+    this.darkHint = new DarkHint(byId('dark-hint'), this);
   }
 
   start() {
@@ -115,9 +117,10 @@ export class App {
   }
 
   async #refused(/** @type {import('./net/rpc_error.js').RpcError} */ error) {
+    if (!this.connection.isOpen) return; // the state in the bar says so already
     this.toasts.showError(error);
     // What the panel showed in advance did not come true.
-    if (this.connection.isOpen) await this.#loadDocument();
+    await this.#loadDocument();
   }
 
   #bindConnection() {
@@ -222,7 +225,7 @@ export class App {
     else if (group === 'animation') this.scene.animations.refresh(id);
     else if (group === 'material') this.material.refresh(id);
     else this.light.refresh(group, id);
-    if (group === 'node' || group === 'light') this.#drawOverlay();
+    if (group !== 'animation' && group !== 'settings') this.#drawOverlay();
   }
 
   /** Things that are chosen may have gone. */
@@ -324,6 +327,7 @@ export class App {
   }
 
   #drawOverlay() {
+    this.darkHint.refresh();
     this.overlay.lights = this.document.data?.lights ?? [];
     this.overlay.chosenLight = this.selection.lightId;
     this.overlay.handle = this.#handlePlace();

@@ -111,4 +111,16 @@ describe('edits', () => {
     await untilStill(page);
     assert.ok(difference(before, await pixels(page)) < 1);
   });
+
+  test('loading the scene anew drops the edits in both browsers', async () => {
+    await ours.page.locator('#tab-scene').click();
+    await ours.page.locator('.loader button').click();
+    for (const { page } of [ours, theirs]) {
+      await page.locator('[data-light]').waitFor({ state: 'detached' });
+      assert.equal(await page.locator('.light-icon').count(), 0);
+    }
+    await untilStill(ours.page);
+    const wall = await meanColor(ours.page, WALL);
+    assert.ok(wall[1] > wall[2], `the wall is ${wall}`);
+  });
 });

@@ -92,6 +92,23 @@ describe('the picture', () => {
     assert.ok(difference(still, await pixels(page)) > 3, 'W walks');
   });
 
+  test('comes nearer when two fingers spread', async () => {
+    const eye = () => page.evaluate(() => globalThis.voxcast.camera.distance);
+    const before = await eye();
+    const touch = await page.context().newCDPSession(page);
+    const send = (type, spread) =>
+      touch.send('Input.dispatchTouchEvent', {
+        type,
+        touchPoints: spread === null ? [] : [{ x: 450 - spread, y: 400, id: 1 }, { x: 450 + spread, y: 400, id: 2 }],
+      });
+    await send('touchStart', 50);
+    for (const spread of [60, 70, 80, 90, 100]) await send('touchMove', spread);
+    await send('touchEnd', null);
+    const ratio = (await eye()) / before;
+    assert.ok(Math.abs(ratio - 0.5) < 0.08, `the distance became ${ratio} of what it was`);
+    await untilStill(page);
+  });
+
   for (const [width, height] of [
     [1280, 800],
     [390, 844],

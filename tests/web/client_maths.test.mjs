@@ -65,6 +65,9 @@ test('turns by quaternions and back', () => {
   near(rotate(fromEulerDegrees([90, 0, 0]), [0, 1, 0]), [0, 0, 1]);
   near(rotate(fromEulerDegrees([0, 90, 0]), [0, 0, 1]), [1, 0, 0]);
   near(toEulerDegrees(fromEulerDegrees([20, -35, 130])), [20, -35, 130], 1e-9);
+  near(toEulerDegrees([0, 1, 0, 0]), [0, 180, 0], 1e-9);
+  const far = fromEulerDegrees([170, 60, -160]);
+  near(rotate(fromEulerDegrees(toEulerDegrees(far)), [1, 2, 3]), rotate(far, [1, 2, 3]), 1e-9);
   // Straight along Y the three angles are not unique, but the turn is.
   for (const angles of [[30, 90, 0], [10, -90, 25]]) {
     const there = fromEulerDegrees(angles);

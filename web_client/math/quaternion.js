@@ -34,15 +34,17 @@ export function fromEulerDegrees([dx, dy, dz]) {
   ];
 }
 
-/** The opposite of fromEulerDegrees. @param {number[]} q @returns {number[]} */
+/** The opposite of fromEulerDegrees: of the two ways, the smaller angles. @param {number[]} q @returns {number[]} */
 export function toEulerDegrees([x, y, z, w]) {
   const sine = Math.max(-1, Math.min(1, 2 * (w * y - z * x)));
   // Looking straight along Y, X and Z turn about one axis: give it all to X.
   if (Math.abs(sine) > 0.99999)
     return [2 * Math.atan2(x, w) * DEGREES, Math.sign(sine) * 90, 0];
-  return [
-    Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)) * DEGREES,
-    Math.asin(sine) * DEGREES,
-    Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) * DEGREES,
-  ];
+  const ex = Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)) * DEGREES;
+  const ey = Math.asin(sine) * DEGREES;
+  const ez = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) * DEGREES;
+  const away = (/** @type {number} */ angle) => (angle < 0 ? -180 : 180);
+  const other = [ex - away(ex), away(ey) - ey, ez - away(ez)];
+  const size = (/** @type {number[]} */ angles) => angles.reduce((sum, a) => sum + Math.abs(a), 0);
+  return size(other) + 1e-6 < size([ex, ey, ez]) ? other : [ex, ey, ez];
 }

@@ -8,6 +8,9 @@ import { makeSection } from './sections.js';
 
 const places = (/** @type {number[]} */ vector) => vector.map((v) => v.toFixed(3)).join(', ');
 
+const counted = (/** @type {number} */ count, /** @type {string} */ noun) =>
+  `${count.toLocaleString('en')} ${noun}${count === 1 ? '' : 's'}`;
+
 /** The scene: which one, its nodes, what is chosen and where, its cameras and animations. */
 export class SceneTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
@@ -43,8 +46,12 @@ export class SceneTab {
   rebuild() {
     const { data } = this.app.document;
     const { nodes, lights, materials } = data;
-    const triangles = data.counts.triangles.toLocaleString('en');
-    this.counts.textContent = `${nodes.length} nodes · ${triangles} triangles · ${materials.length} materials · ${lights.length} lights`;
+    this.counts.textContent = [
+      counted(nodes.length, 'node'),
+      counted(data.counts.triangles, 'triangle'),
+      counted(materials.length, 'material'),
+      counted(lights.length, 'light'),
+    ].join(' · ');
     this.tree.show(data.nodes);
     this.loader.showSource(data.source);
     this.#drawCameras();

@@ -25,8 +25,9 @@ export class CameraSender {
     return this.poses.get(revision) ?? this.camera.pose;
   }
 
-  /** Takes a pose that the server chose itself. */
+  /** Takes a pose that the server chose itself: frames show it under the revision of before. */
   adopt(/** @type {import('../math/projection.js').CameraPose} */ pose) {
+    this.poses.clear();
     this.camera.set(pose);
   }
 
