@@ -323,7 +323,8 @@ static void test_cameras_see_fronts_alone(void **state)
             struct sight sight = {0};
             look(scene, rays, camera, &sight);
             printf("%s, %s: %u of %u rays hit, %u backs, %u of %u doubled\n", scene->name,
-                   scene->cameras[camera].name, sight.hits, sight.rays, sight.backs, sight.doubles);
+                   scene->cameras[camera].name, sight.hits, sight.rays, sight.backs, sight.doubles,
+                   sight.checked);
             assert_true(sight.hits * 5 > sight.rays); // open scenes show much sky
             // A ray may slip between two triangles of unequal division.
             assert_true(sight.backs * 1000 <= sight.hits);
