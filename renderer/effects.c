@@ -10,9 +10,13 @@ static const struct {
 } effects[EFFECT_COUNT] = {
     [EFFECT_TEXTURES] = {"textures", "TEXTURES"},
     [EFFECT_ALPHA_MASK] = {"alpha_mask", "ALPHA_MASK"},
-    [EFFECT_LIGHTS] = {"lights", "LIGHTS"},
+    [EFFECT_VERTEX_COLORS] = {"vertex_colors", "VERTEX_COLORS"},
+    [EFFECT_SPECULAR] = {"specular", "SPECULAR"},
+    [EFFECT_PUNCTUAL_LIGHTS] = {"punctual_lights", "PUNCTUAL_LIGHTS"},
     [EFFECT_AREA_LIGHTS] = {"area_lights", "AREA_LIGHTS"},
     [EFFECT_SHADOWS] = {"shadows", "SHADOWS"},
+    [EFFECT_FLAT_SHADOWS] = {"flat_shadows", "FLAT_SHADOWS"},
+    [EFFECT_CUBE_SHADOWS] = {"cube_shadows", "CUBE_SHADOWS"},
     [EFFECT_LIGHT_TILES] = {"light_tiles", "LIGHT_TILES"},
     [EFFECT_BLINN_PHONG] = {"blinn_phong", "BLINN_PHONG"},
     [EFFECT_ENVIRONMENT] = {"environment", "ENVIRONMENT"},
@@ -51,14 +55,25 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
     const struct resident_counts *counts = &resident->counts;
     decide_count(plan, EFFECT_TEXTURES, counts->textured_materials, "textured material");
     decide_count(plan, EFFECT_ALPHA_MASK, counts->masked_materials, "alpha-masked material");
-    decide_count(plan, EFFECT_LIGHTS, counts->lights + counts->area_lights, "light");
+    decide_count(plan, EFFECT_VERTEX_COLORS, counts->colored_primitives,
+                 "primitive with vertex colours");
+    decide_count(plan, EFFECT_SPECULAR, counts->specular_materials, "specular material");
+    decide_count(plan, EFFECT_PUNCTUAL_LIGHTS, counts->lights, "punctual light");
     decide_count(plan, EFFECT_AREA_LIGHTS, counts->area_lights, "planar emitter");
     decide_count(plan, EFFECT_LIGHT_TILES, counts->ranged_lights, "light of limited range");
     decide_count(plan, EFFECT_TRANSPARENCY, counts->transparent_materials, "transparent material");
-    if (!settings->shadows)
-        decide(plan, EFFECT_SHADOWS, false, "switched off");
-    else
-        decide_count(plan, EFFECT_SHADOWS, counts->shadow_layers, "shadow view");
+    static const enum effect shadow_effects[] = {EFFECT_SHADOWS, EFFECT_FLAT_SHADOWS,
+                                                 EFFECT_CUBE_SHADOWS};
+    const uint32_t shadow_counts[] = {counts->shadow_layers, counts->flat_shadows,
+                                      counts->cube_shadows};
+    for (int i = 0; i < 3; i++)
+        if (settings->shadows)
+            decide_count(plan, shadow_effects[i], shadow_counts[i],
+                         i == 0   ? "shadow view"
+                         : i == 1 ? "spot or sun"
+                                  : "all-round lamp");
+        else
+            decide(plan, shadow_effects[i], false, "switched off");
     if (settings->shading_model == SHADING_MODEL_BLINN_PHONG)
         decide(plan, EFFECT_BLINN_PHONG, true, "chosen for all materials");
     else
@@ -88,10 +103,11 @@ void effects_write_defines(uint32_t bits, uint32_t mask, const struct resident *
         int written;
         if (i == EFFECT_TEXTURES)
             written = snprintf(out_text + used, out_size - used,
-                               "COLOR_CLASSES %u\nDATA_CLASSES %u\nTEXTURE_TRANSFORMS %d\n",
+                               "COLOR_CLASSES %u\nDATA_CLASSES %u\nTEXTURE_TRANSFORMS %d\n"
+                               "SECOND_UV_SET %d\n",
                                resident->texture_spaces[TEXTURE_SPACE_COLOR].class_count,
                                resident->texture_spaces[TEXTURE_SPACE_DATA].class_count,
-                               resident->texture_transforms);
+                               resident->texture_transforms, resident->second_uv_set);
         else
             written = snprintf(out_text + used, out_size - used, "%s %d\n", effects[i].define,
                                (bits & EFFECT_BIT(i)) != 0);

@@ -7,10 +7,14 @@
 enum effect {
     EFFECT_TEXTURES,
     EFFECT_ALPHA_MASK,
-    EFFECT_LIGHTS,      // any enabled punctual light or planar emitter
+    EFFECT_VERTEX_COLORS,
+    EFFECT_SPECULAR, // any material that reflects like a mirror or gloss
+    EFFECT_PUNCTUAL_LIGHTS,
     EFFECT_AREA_LIGHTS, // planar emitters
     EFFECT_SHADOWS,
-    EFFECT_LIGHT_TILES, // lights of limited range
+    EFFECT_FLAT_SHADOWS, // of the sun and of spots: one view each
+    EFFECT_CUBE_SHADOWS, // of lamps that shine all around: six views each
+    EFFECT_LIGHT_TILES,  // lights of limited range
     EFFECT_BLINN_PHONG,
     EFFECT_ENVIRONMENT,
     EFFECT_TRANSPARENCY, // blended or transmissive materials
@@ -19,6 +23,14 @@ enum effect {
 };
 
 #define EFFECT_BIT(effect) (1u << (effect))
+
+// What picks the code of shaders/lib/lighting.glsl and shaders/lib/geometry.glsl.
+#define DIRECT_LIGHT_EFFECTS                                                                       \
+    (EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_FLAT_SHADOWS) |                                \
+     EFFECT_BIT(EFFECT_CUBE_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES) |                            \
+     EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) | EFFECT_BIT(EFFECT_AREA_LIGHTS) |                         \
+     EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR))
+#define SURFACE_EFFECTS (EFFECT_BIT(EFFECT_TEXTURES) | EFFECT_BIT(EFFECT_VERTEX_COLORS))
 
 struct resident;
 

@@ -25,7 +25,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                       .texture_anisotropy = 4.0f,
                       .shadow_taps = 16,
                       .shadow_cascades = 2},
-    [QUALITY_FINAL] = {.resolution_scale = 1.0f,
+    [QUALITY_FINAL] = {.resolution_scale = 2.0f,
                        .texture_anisotropy = 8.0f,
                        .shadow_taps = 32,
                        .shadow_cascades = 3},

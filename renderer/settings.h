@@ -56,7 +56,7 @@ struct render_settings {
 
 // One row of the quality table: what costs time and may be traded for it.
 struct quality_level {
-    float resolution_scale;   // rendered size over shown size
+    float resolution_scale;   // rendered size over shown size; 2 averages four samples a pixel
     float texture_anisotropy; // 1 is plain trilinear
     uint32_t shadow_taps;     // PCF taps per light and pixel
     uint32_t shadow_cascades; // of the sun, around the camera, beside the map of the whole scene

@@ -129,8 +129,13 @@ bool view_prepare(struct view *view, const struct resident *resident,
                   const struct frame_params *params, uint32_t effect_bits)
 {
     const struct quality_level *quality = &quality_levels[params->quality];
-    uint32_t width = (uint32_t)((float)params->width * quality->resolution_scale);
-    uint32_t height = (uint32_t)((float)params->height * quality->resolution_scale);
+    float scale = quality->resolution_scale;
+    // The largest views are not supersampled beyond what GPU memory is planned for.
+    if ((float)params->width * scale * (float)params->height * scale >
+        (float)VIEW_MAX_WIDTH * VIEW_MAX_HEIGHT)
+        scale = 1.0f;
+    uint32_t width = (uint32_t)((float)params->width * scale);
+    uint32_t height = (uint32_t)((float)params->height * scale);
     width = width ? width : 1;
     height = height ? height : 1;
     if (width != view->width || height != view->height) {

@@ -82,10 +82,11 @@ static cJSON *mesh_to_json(const struct scene *scene, uint32_t id)
     cJSON *primitives = cJSON_AddArrayToObject(object, "primitives");
     for (uint32_t i = 0; i < mesh->primitive_count; i++) {
         const struct scene_primitive *primitive = &scene->primitives[mesh->primitive_first + i];
+        uint32_t triangle_count = primitive->index_count / 3;
         cJSON *item = cJSON_CreateObject();
         cJSON_AddNumberToObject(item, "id", mesh->primitive_first + i);
         cJSON_AddNumberToObject(item, "material", primitive->material);
-        cJSON_AddNumberToObject(item, "triangles", primitive->index_count / 3);
+        cJSON_AddNumberToObject(item, "triangles", triangle_count);
         cJSON_AddItemToArray(primitives, item);
     }
     return object;

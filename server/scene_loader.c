@@ -162,8 +162,8 @@ char *scene_loader_resolve(const char *folder, const char *source, struct error 
         path = realpath(joined, NULL);
     }
     size_t length = root ? strlen(root) : 0;
-    bool below =
-        path && strncmp(path, root, length) == 0 && (path[length] == '/' || strcmp(root, "/") == 0);
+    bool below = root && path && strncmp(path, root, length) == 0 &&
+                 (path[length] == '/' || strcmp(root, "/") == 0);
     if (!below) {
         free(path);
         path = NULL;

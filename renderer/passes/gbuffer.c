@@ -19,7 +19,7 @@ static bool gbuffer_run(struct frame *frame, const struct pass *pass, struct err
 
 const struct pass gbuffer_pass = {
     .name = "gbuffer",
-    .effects_used = EFFECT_BIT(EFFECT_TEXTURES),
+    .effects_used = SURFACE_EFFECTS,
     .use_count = 3,
     .uses = {{RESOURCE_IDS, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

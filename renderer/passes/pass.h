@@ -48,6 +48,18 @@ struct frame {
     bool visibility_changed; // camera, size, geometry, placement or materials
 };
 
+static inline bool frame_has(const struct frame *frame, enum effect effect)
+{
+    return (frame->plan.bits & EFFECT_BIT(effect)) != 0;
+}
+
+// Debug views of the G-buffer show no light and are displayed as they are.
+static inline bool frame_shows_light(const struct frame *frame)
+{
+    return frame->params->debug_view == DEBUG_VIEW_FINAL ||
+           frame->params->debug_view == DEBUG_VIEW_DIRECT;
+}
+
 struct pass {
     const char *name;
     uint32_t effects_used; // EFFECT_BITs that pick this pass's shader permutation

@@ -37,8 +37,7 @@ static void place_cascade(struct frame *frame, uint32_t i)
         low[axis] = center[axis] - half;
     for (int axis = 0; axis < 3; axis++)
         high[axis] = center[axis] + half;
-    resident_directional_view(resident->directional_axis, low, high, resident->diagonal_m,
-                              &view->cascades[i]);
+    resident_directional_view(resident, resident->directional_axis, low, high, &view->cascades[i]);
     view->cascade_stale[i] = true;
 }
 

@@ -40,10 +40,7 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
 
 const struct pass transparency_pass = {
     .name = "transparency",
-    .effects_used = EFFECT_BIT(EFFECT_TEXTURES) | EFFECT_BIT(EFFECT_LIGHTS) |
-                    EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES) |
-                    EFFECT_BIT(EFFECT_AREA_LIGHTS) | EFFECT_BIT(EFFECT_BLINN_PHONG) |
-                    EFFECT_BIT(EFFECT_ENVIRONMENT),
+    .effects_used = SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ENVIRONMENT),
     .use_count = 5,
     .uses = {{RESOURCE_DEPTH, ACCESS_READ},
              {RESOURCE_FRAGMENTS, ACCESS_WRITE},

@@ -154,8 +154,9 @@ static bool upload_levels(struct resident *resident, const struct scene_environm
     for (uint32_t level = 0; done && level < LEVEL_COUNT; level++) {
         for (uint32_t i = 0; any && i < edge * edge; i++) {
             float n[3];
+            uint32_t row = i / edge;
             octahedral_direction(((float)(i % edge) + 0.5f) / (float)edge,
-                                 ((float)(i / edge) + 0.5f) / (float)edge, n);
+                                 ((float)row + 0.5f) / (float)edge, n);
             blur_direction(environment, n, (float)level / (LEVEL_COUNT - 1), texels + 4 * i);
         }
         gpu_texture_write(resident->environment_levels, 0, level, texels);

@@ -52,6 +52,16 @@ static bool upload_id_blocks(struct resident *resident)
     return done;
 }
 
+static bool has_colors(const struct scene *scene, const struct scene_primitive *primitive)
+{
+    for (uint32_t i = 0; i < primitive->vertex_count; i++) {
+        const float *color = scene->vertices[primitive->vertex_first + i].color;
+        if (color[0] != 1.0f || color[1] != 1.0f || color[2] != 1.0f || color[3] != 1.0f)
+            return true;
+    }
+    return false;
+}
+
 bool resident_upload_geometry(struct resident *resident)
 {
     const struct scene *scene = resident->scene;
@@ -76,6 +86,9 @@ bool resident_upload_geometry(struct resident *resident)
             };
         }
     }
+    resident->counts.colored_primitives = 0;
+    for (uint32_t i = 0; i < scene->primitive_count; i++)
+        resident->counts.colored_primitives += has_colors(scene, &scene->primitives[i]);
     resident->drawable = scene->index_count > 0 && count > 0;
     if (!upload(resident, &resident->vertices, "geometry.vertices",
                 scene->vertex_count * sizeof(struct scene_vertex), scene->vertices) ||

@@ -6,12 +6,7 @@
 #include "renderer/resident/resident.h"
 #include "renderer/scene/placement.h"
 
-// Cube faces and spots see a little more than they need, for the filter's taps at the rim.
-#define SHADOW_FACE_MARGIN  1.02f
 #define MAX_SPOT_SHADOW_FOV 2.9f // radians; a wider cone gets a cube
-
-// Nearest shadow caster of a lamp, relative to the scene's diagonal.
-#define SHADOW_NEAR_FRACTION 1e-4f
 
 struct light_builder {
     struct resident *resident;
@@ -60,17 +55,23 @@ static void add_cube_views(struct light_builder *builder, const float origin[3])
         add_perspective_view(builder, origin, axes[face][0], axes[face][1], fov);
 }
 
-void resident_directional_view(const float axis[3], const float box_min[3], const float box_max[3],
-                               float near_reach_m, struct shadow_view_block *out_view)
+void resident_directional_view(const struct resident *resident, const float axis[3],
+                               const float box_min[3], const float box_max[3],
+                               struct shadow_view_block *out_view)
 {
     vec3 up = {0.0f, 1.0f, 0.0f};
     if (fabsf(axis[1]) > 0.9f)
         up[0] = 1.0f, up[1] = 0.0f;
     mat4 view_from_world;
     glm_lookat_rh((vec3){0, 0, 0}, (float *)axis, up, view_from_world);
-    double low[3], high[3];
+    double low[3], high[3], scene_low[3], scene_high[3];
     placement_transform_box((const float *)view_from_world, box_min, box_max, low, high);
-    high[2] += near_reach_m; // casters may stand nearer to the sun than what they shade
+    placement_transform_box((const float *)view_from_world, resident->bounds_min,
+                            resident->bounds_max, scene_low, scene_high);
+    // A flat scene still needs some depth, or the smallest bias would leave it.
+    double pad = 0.01 * resident->diagonal_m;
+    low[2] = scene_low[2] - pad;
+    high[2] = scene_high[2] + pad;
     *out_view = (struct shadow_view_block){0};
     mat4 clip_from_view;
     glm_mat4_zero(clip_from_view);
@@ -134,9 +135,11 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
         return;
     block->shadow[0] = builder->layers;
     block->shadow[1] = needed;
+    resident->counts.flat_shadows += needed == 1;
+    resident->counts.cube_shadows += needed == 6;
     if (directional) {
-        resident_directional_view(block->direction, resident->bounds_min, resident->bounds_max,
-                                  0.0f, &builder->views[builder->layers++]);
+        resident_directional_view(resident, block->direction, resident->bounds_min,
+                                  resident->bounds_max, &builder->views[builder->layers++]);
         if (resident->directional_light == NO_SHADOW) {
             resident->directional_light = block->shadow[2];
             resident->sun_shadow_view = block->shadow[0];
@@ -160,6 +163,7 @@ static void add_area_light_shadow(struct light_builder *builder, struct area_lig
         return;
     light->shadow[0] = builder->layers;
     light->shadow[1] = 6;
+    builder->resident->counts.cube_shadows++;
     // A little before the emitter, so that it does not shade itself.
     vec3 origin;
     float lift = 1e-3f * sqrtf(light->radiance[3]);
@@ -202,6 +206,8 @@ bool resident_upload_lights(struct resident *resident)
         struct resident_counts *counts = &resident->counts;
         counts->lights = 0;
         counts->ranged_lights = 0;
+        counts->flat_shadows = 0;
+        counts->cube_shadows = 0;
         resident->directional_light = NO_SHADOW;
         counts->area_lights = resident_find_area_lights(resident, area_lights);
         // Shadow maps go to suns first, then to planar emitters, then to lamps as listed.

@@ -87,6 +87,7 @@ bool resident_upload_materials(struct resident *resident)
     struct texture_block *textures = calloc(count * TEXTURE_SLOTS, sizeof(*textures));
     bool done = materials && textures;
     resident->texture_transforms = false;
+    resident->second_uv_set = false;
     for (uint32_t i = 0; done && i < scene->material_count; i++) {
         const struct scene_material *material = &scene->materials[i];
         fill_material_block(&materials[i], material);
@@ -97,6 +98,7 @@ bool resident_upload_materials(struct resident *resident)
             const struct scene_texture *texture = &material->textures[slot];
             materials[i].info[2] |= 1u << slot;
             resident->texture_transforms = resident->texture_transforms || has_transform(texture);
+            resident->second_uv_set = resident->second_uv_set || texture->uv_set == 1;
             fill_texture_block(&resident->texture_spaces[resident_texture_space(slot)],
                                &textures[i * TEXTURE_SLOTS + (uint32_t)slot], texture);
         }

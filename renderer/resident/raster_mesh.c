@@ -1,6 +1,7 @@
 // The vertices and indices that are rasterised: what the visibility pass needs of a vertex, packed,
 // and each triangle with a first (provoking) vertex of its own that carries the triangle's number.
 // A flat attribute costs nothing where gl_PrimitiveID makes a software renderer copy every vertex.
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,6 +44,7 @@ static bool add_triangle(struct mesh_builder *builder, const uint32_t corners[3]
                          uint32_t *out_indices)
 {
     uint32_t at[3];
+    assert(builder->placed);
     for (int i = 0; i < 3; i++) {
         at[i] = builder->placed[corners[i]];
         if (at[i] != UNUSED)
@@ -51,6 +53,7 @@ static bool add_triangle(struct mesh_builder *builder, const uint32_t corners[3]
             return false;
         builder->placed[corners[i]] = at[i];
     }
+    assert(builder->vertices);
     int first = 0;
     while (first < 3 && builder->vertices[at[first]].triangle != UNUSED)
         first++;

@@ -91,6 +91,7 @@ void resident_count_materials(struct resident *resident)
     counts->masked_materials = 0;
     counts->transparent_materials = 0;
     counts->blinn_phong_materials = 0;
+    counts->specular_materials = 0;
     bool *counted = calloc(scene->material_count ? scene->material_count : 1, sizeof(bool));
     if (!counted)
         return;
@@ -109,6 +110,8 @@ void resident_count_materials(struct resident *resident)
         counts->transparent_materials +=
             material->alpha_mode == SCENE_ALPHA_BLEND || material->transmission > 0.0f;
         counts->blinn_phong_materials += material->shading == SCENE_SHADING_BLINN_PHONG;
+        bool dielectric = material->ior != 1.0f && material->specular > 0.0f;
+        counts->specular_materials += material->metallic > 0.0f || dielectric;
     }
     free(counted);
 }

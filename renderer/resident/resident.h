@@ -10,7 +10,10 @@
 #include "shared/bindings.h"
 #include "shared/blocks.h"
 
-#define SHADOW_MAP_EDGE   2048u
+#define SHADOW_MAP_EDGE 2048u
+// Nearest shadow caster of a lamp, relative to the scene's diagonal.
+#define SHADOW_NEAR_FRACTION 1e-4f
+
 #define MAX_VIEW_CASCADES (RENDERER_MAX_VIEWS * MAX_CASCADES)
 
 // Draws are sorted into groups of one kind and one face culling.
@@ -47,10 +50,14 @@ struct resident_counts {
     uint32_t ranged_lights;
     uint32_t area_lights;
     uint32_t shadow_layers;
+    uint32_t flat_shadows;       // lights with one view
+    uint32_t cube_shadows;       // lights with six
+    uint32_t colored_primitives; // with vertex colours other than white
     uint32_t textured_materials; // in use by a visible instance; likewise below
     uint32_t masked_materials;
     uint32_t transparent_materials;
     uint32_t blinn_phong_materials;
+    uint32_t specular_materials;
 };
 
 // Pictures of one colour space: an array per edge, and where each of the scene's images went.
@@ -91,6 +98,7 @@ struct resident {
     struct gpu_buffer *materials;
     struct gpu_buffer *texture_blocks;
     bool texture_transforms;                // any texture has a KHR_texture_transform of its own
+    bool second_uv_set;                     // any texture reads the second set of coordinates
     struct texture_space texture_spaces[2]; // sRGB colour, linear data
 
     struct gpu_buffer *lights;
@@ -134,10 +142,11 @@ int resident_texture_space(int slot);
 // Binds all buffers and textures of the scene to their slots.
 void resident_bind(const struct resident *resident);
 
-// The orthographic view of a box along `axis` (unit, the way that light travels), with a reach of
-// `near_reach_m` towards the light beyond the box for casters outside it.
-void resident_directional_view(const float axis[3], const float box_min[3], const float box_max[3],
-                               float near_reach_m, struct shadow_view_block *out_view);
+// The orthographic view along `axis` (unit, the way that light travels) of a box, as deep as the
+// whole scene.
+void resident_directional_view(const struct resident *resident, const float axis[3],
+                               const float box_min[3], const float box_max[3],
+                               struct shadow_view_block *out_view);
 
 // Finds the planar emitters among the visible instances. Returns their number.
 uint32_t resident_find_area_lights(const struct resident *resident,

@@ -28,7 +28,9 @@ static void *limited_realloc(void *old, size_t size)
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS SCENE_MAX_IMAGE_EDGE
 #define STB_IMAGE_STATIC
+#ifndef __clang_analyzer__ // its findings in stb are not ours to mend
 #define STB_IMAGE_IMPLEMENTATION
+#endif
 #pragma GCC diagnostic ignored "-Wunused-function" // stb declares more than these options define
 #include <stb_image.h>
 
@@ -70,7 +72,7 @@ bool image_decode_size(const uint8_t *bytes, size_t size, uint32_t *out_width, u
 static uint8_t *decode_webp(const uint8_t *bytes, size_t size, uint32_t width, uint32_t height)
 {
     size_t byte_count = (size_t)width * height * 4;
-    uint8_t *rgba = malloc(byte_count);
+    uint8_t *rgba = byte_count ? malloc(byte_count) : NULL;
     if (rgba && !WebPDecodeRGBAInto(bytes, size, rgba, byte_count, (int)width * 4)) {
         free(rgba);
         return NULL;
@@ -93,7 +95,7 @@ static uint8_t *decode_stb(const uint8_t *bytes, size_t size, uint32_t width, ui
 
 struct image *image_decode(const uint8_t *bytes, size_t size, struct error *out_error)
 {
-    uint32_t width, height;
+    uint32_t width = 0, height = 0;
     if (!image_decode_size(bytes, size, &width, &height, out_error)) {
         return NULL;
     }

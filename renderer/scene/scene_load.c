@@ -50,6 +50,37 @@ static struct scene *import_file(const char *path, struct error *out_error)
     return NULL;
 }
 
+// Glowing pictures (labels, gauges) light nothing; surfaces of constant emission are lamps.
+static bool is_lit(const struct scene *scene)
+{
+    if (scene->light_count > 0) {
+        return true;
+    }
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        const struct scene_material *material = &scene->materials[i];
+        const float *emissive = material->emissive;
+        bool constant = material->textures[SCENE_TEXTURE_EMISSIVE].image == SCENE_NONE;
+        if (constant && material->emissive_strength > 0.0f &&
+            emissive[0] + emissive[1] + emissive[2] > 0.0f) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A file that brings no light at all would be a black picture: give it an overcast sky.
+static void add_default_sky(struct scene *scene)
+{
+    scene->environment = (struct scene_environment){
+        .type = SCENE_ENVIRONMENT_GRADIENT,
+        .intensity = 1.0f,
+        .color = {0.85f, 0.92f, 1.0f},
+        .horizon_color = {0.8f, 0.8f, 0.8f},
+        .ground_color = {0.3f, 0.28f, 0.26f},
+    };
+    scene_add_warning(scene, "the file holds no light: a default sky lights it (environment.type)");
+}
+
 struct scene *scene_load(const char *source, struct error *out_error)
 {
     struct scene *scene;
@@ -64,6 +95,9 @@ struct scene *scene_load(const char *source, struct error *out_error)
             return NULL;
         }
         scene = import_file(canonical, out_error);
+        if (scene && !is_lit(scene)) {
+            add_default_sky(scene);
+        }
     }
     if (scene && !canonical) {
         scene_destroy(&scene);

@@ -3,7 +3,7 @@
 #include "lib/gbuffer.glsl"
 #include "lib/display.glsl"
 #include "lib/radiance.glsl"
-#if SHADOWS
+#if FLAT_SHADOWS
 #include "lib/shadow.glsl"
 #endif
 
@@ -58,7 +58,7 @@ uint lights_of_tile(uvec2 pixel)
 
 vec3 cascade_color(surface s)
 {
-#if SHADOWS
+#if FLAT_SHADOWS
     if (frame.lights.w == 0u)
         return vec3(0.35 + 0.65 * clamp(dot(s.normal, s.view), 0.0, 1.0));
     bool inside;

@@ -1,6 +1,7 @@
 // Reflection models. Cook-Torrance with GGX as glTF 2.0, appendix B: Trowbridge-Reitz
 // distribution, height-correlated Smith visibility (Heitz 2014), Schlick Fresnel. Blinn-Phong
-// normalised by (n + 8) / 8 pi (Akenine-Moeller et al., Real-Time Rendering).
+// normalised by (n + 8) / 8 pi (Akenine-Moeller et al., Real-Time Rendering). SPECULAR 0: every
+// material of the scene is matte, so that base colour over pi is all there is.
 #include "lib/surface.glsl"
 
 // Below this the highlight of a point light is narrower than any pixel; it keeps D finite.
@@ -36,6 +37,9 @@ vec3 fresnel_schlick(vec3 f0, vec3 f90, float v_h)
 // Share of light that the dielectric layer lets through to the diffuse base.
 vec3 diffuse_reflectance(surface s, float v_h)
 {
+#if !SPECULAR
+    return s.base_color;
+#endif
     vec3 reflected = fresnel_schlick(s.f0, vec3(s.f90), v_h);
     float kept = 1.0 - max(reflected.r, max(reflected.g, reflected.b));
     return s.base_color * ((1.0 - s.metallic) * kept);
@@ -74,7 +78,11 @@ vec3 brdf_cosine(surface s, vec3 l)
     float n_l = dot(s.normal, l);
     if (n_l <= 0.0)
         return vec3(0.0);
+#if SPECULAR
     vec3 h = safe_normalize(l + s.view, s.normal);
     float v_h = clamp(dot(s.view, h), 0.0, 1.0);
     return diffuse_reflectance(s, v_h) * (n_l / PI) + specular_brdf_cosine(s, l, alpha_of(s));
+#else
+    return s.base_color * (n_l / PI);
+#endif
 }

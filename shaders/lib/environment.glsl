@@ -76,8 +76,9 @@ vec3 environment_light(surface s)
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
-    vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
-    vec3 dielectric = s.f0 * scale_bias.x + s.f90 * scale_bias.y;
+    // The fit dips a little below 0 at some angles.
+    vec3 reflected = max(f0 * scale_bias.x + f90 * scale_bias.y, 0.0);
+    vec3 dielectric = max(s.f0 * scale_bias.x + s.f90 * scale_bias.y, 0.0);
     float kept = 1.0 - max(dielectric.r, max(dielectric.g, dielectric.b));
     vec3 diffuse = s.base_color * ((1.0 - s.metallic) * kept) * environment_diffuse(s.normal);
     vec3 mirror = reflect(-s.view, s.normal);

@@ -139,7 +139,10 @@ surface load_surface(uint id, vec2 pixel, out layer through)
                                    dot(instances[t.instance].normal_rows[1].xyz, local_normal),
                                    dot(instances[t.instance].normal_rows[2].xyz, local_normal)),
                               s.geometric_normal);
-    vec4 base = material.base_color * interpolate4(t, 14u, weights);
+    vec4 base = material.base_color;
+#if VERTEX_COLORS
+    base *= interpolate4(t, 14u, weights);
+#endif
     float metallic = material.surface.x;
     float roughness = material.surface.y;
     float occlusion = 1.0;
@@ -152,7 +155,11 @@ surface load_surface(uint id, vec2 pixel, out layer through)
         texture_point point;
         vec3 weights_dx = plane_weights(t, direction + frame.ray_dx.xyz);
         vec3 weights_dy = plane_weights(t, direction + frame.ray_dy.xyz);
+#if SECOND_UV_SET
         vec4 uv[3] = {fetch4(t.words.x + 10u), fetch4(t.words.y + 10u), fetch4(t.words.z + 10u)};
+#else
+        vec2 uv[3] = {fetch2(t.words.x + 10u), fetch2(t.words.y + 10u), fetch2(t.words.z + 10u)};
+#endif
         point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
         point.dx = uv[0] * weights_dx.x + uv[1] * weights_dx.y + uv[2] * weights_dx.z - point.uv;
         point.dy = uv[0] * weights_dy.x + uv[1] * weights_dy.y + uv[2] * weights_dy.z - point.uv;

@@ -4,15 +4,20 @@
 #include "lib/shadow.glsl"
 #endif
 
+#if PUNCTUAL_LIGHTS
 layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
 {
     light_block lights[];
 };
 
+#endif
+
+#if AREA_LIGHTS
 layout(std430, binding = BIND_AREA_LIGHTS) readonly buffer area_light_storage
 {
     area_light_block area_lights[];
 };
+#endif
 
 #if LIGHT_TILES
 layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
@@ -24,6 +29,7 @@ layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 // Nearer than this to a light (1 mm) the inverse square no longer grows.
 const float MIN_LIGHT_DISTANCE_SQUARED = 1e-6;
 
+#if PUNCTUAL_LIGHTS
 float distance_attenuation(float squared, float range_m)
 {
     float attenuation = 1.0 / max(squared, MIN_LIGHT_DISTANCE_SQUARED);
@@ -59,18 +65,22 @@ vec3 punctual_light(surface s, light_block light)
 #endif
     return reflected;
 }
+#endif
 
 #if AREA_LIGHTS
 // Integral of one edge of a polygon seen from the origin (Lambert 1760; Baum et al. 1989): the
-// angle it spans times the unit normal of its plane, component along n.
+// angle it spans times the unit normal of its plane, component along n. a and b are unit vectors.
+// angle / sin(angle) by the rational fit of Hill and Heitz 2016, "Real-Time Area Lighting: a Journey
+// from Research to Production".
 float edge_integral(vec3 a, vec3 b, vec3 n)
 {
-    vec3 normal = cross(a, b);
-    float squared = dot(normal, normal);
-    if (squared < 1e-24)
-        return 0.0;
-    float cosine = clamp(dot(a, b), -1.0, 1.0);
-    return acos(cosine) * dot(normal, n) * inversesqrt(squared);
+    float x = dot(a, b);
+    float y = abs(x);
+    float numerator = 0.8543985 + (0.4965155 + 0.0145206 * y) * y;
+    float denominator = 3.4175940 + (4.1616724 + y) * y;
+    float fit = numerator / denominator;
+    float angle_over_sine = x > 0.0 ? fit : 0.5 * inversesqrt(max(1.0 - x * x, 1e-7)) - fit;
+    return dot(cross(a, b), n) * angle_over_sine;
 }
 
 // Form factor of a quad for a receiver at the origin with unit normal n, clipped at its horizon:
@@ -102,9 +112,10 @@ float quad_form_factor(vec3 corners[4], vec3 n)
     }
     if (started)
         sum += edge_integral(last, first, n);
-    return sum / (2.0 * PI);
+    return sum; // the fit is of angle / (2 pi sine)
 }
 
+#if SPECULAR
 // Specular light of a planar emitter by its point nearest to the mirror ray, with the lobe widened
 // by the emitter's extent (Karis 2013, "Real Shading in Unreal Engine 4").
 vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reversed)
@@ -136,6 +147,8 @@ vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reve
     return specular_brdf_cosine(s, l, min(widened, 1.0)) * light.radiance.rgb * solid_angle;
 }
 
+#endif
+
 vec3 area_light(surface s, area_light_block light)
 {
     float side = dot(light.normal.xyz, s.position - light.center.xyz);
@@ -151,8 +164,10 @@ vec3 area_light(surface s, area_light_block light)
     float form_factor = max(-quad_form_factor(corners, s.normal), 0.0);
     vec3 to_light = safe_normalize(light.center.xyz - s.position, s.normal);
     float v_h = clamp(dot(s.view, safe_normalize(to_light + s.view, s.normal)), 0.0, 1.0);
-    vec3 reflected = diffuse_reflectance(s, v_h) * light.radiance.rgb * form_factor +
-                     area_specular(s, light, corners, reversed);
+    vec3 reflected = diffuse_reflectance(s, v_h) * light.radiance.rgb * form_factor;
+#if SPECULAR
+    reflected += area_specular(s, light, corners, reversed);
+#endif
 #if SHADOWS
     if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0)
         reflected *= shadow_visibility(light.shadow, light.center.xyz, s.position,
@@ -166,7 +181,7 @@ vec3 area_light(surface s, area_light_block light)
 vec3 direct_light(surface s, uvec2 pixel)
 {
     vec3 sum = vec3(0.0);
-#if LIGHT_TILES
+#if PUNCTUAL_LIGHTS && LIGHT_TILES
     uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.size.z + pixel.x / LIGHT_TILE_EDGE;
     for (uint word = 0u; word < frame.lights.z; word++) {
         uint mask = light_masks[tile * frame.lights.z + word];
@@ -176,7 +191,7 @@ vec3 direct_light(surface s, uvec2 pixel)
             sum += punctual_light(s, lights[word * 32u + bit]);
         }
     }
-#else
+#elif PUNCTUAL_LIGHTS
     for (uint i = 0u; i < frame.lights.x; i++)
         sum += punctual_light(s, lights[i]);
 #endif

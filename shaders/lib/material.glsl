@@ -1,6 +1,7 @@
 // Materials and their textures, as glTF 2.0 and its KHR_materials_* extensions define them.
 // COLOR_CLASSES, DATA_CLASSES: how many texture arrays (one per size) the scene has of sRGB and of
-// linear pictures; TEXTURE_TRANSFORMS: whether any texture has a transform of its own.
+// linear pictures; TEXTURE_TRANSFORMS: whether any texture has a transform of its own;
+// SECOND_UV_SET: whether any texture uses the second set of texture coordinates.
 #include "lib/frame.glsl"
 
 layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
@@ -24,10 +25,15 @@ layout(binding = UNIT_DATA_CLASSES) uniform sampler2DArray data_classes[DATA_CLA
 #endif
 
 // Texture coordinates of both sets, and their change per pixel to the right and downwards.
+#if SECOND_UV_SET
+#define UV_VECTOR vec4
+#else
+#define UV_VECTOR vec2
+#endif
 struct texture_point {
-    vec4 uv;
-    vec4 dx;
-    vec4 dy;
+    UV_VECTOR uv;
+    UV_VECTOR dx;
+    UV_VECTOR dy;
 };
 
 const float MAX_FOOTPRINT_TEXELS = 1e7;
@@ -124,10 +130,15 @@ void set_filter(inout footprint f, vec2 dx, vec2 dy, float edge)
 footprint find_footprint(uint texture_number, texture_point point)
 {
     uint bits = textures[texture_number].info.x;
+    vec2 at = point.uv.xy;
+    vec2 dx = point.dx.xy;
+    vec2 dy = point.dy.xy;
+#if SECOND_UV_SET
     bool second = (bits & TEXTURE_UV_SET_1) != 0u;
-    vec2 at = second ? point.uv.zw : point.uv.xy;
-    vec2 dx = second ? point.dx.zw : point.dx.xy;
-    vec2 dy = second ? point.dy.zw : point.dy.xy;
+    at = second ? point.uv.zw : at;
+    dx = second ? point.dx.zw : dx;
+    dy = second ? point.dy.zw : dy;
+#endif
 #if TEXTURE_TRANSFORMS
     vec3 row_u = textures[texture_number].uv_row_u.xyz;
     vec3 row_v = textures[texture_number].uv_row_v.xyz;

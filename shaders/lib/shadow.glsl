@@ -11,20 +11,20 @@ layout(std430, binding = BIND_SHADOW_VIEWS) readonly buffer shadow_view_storage
 layout(binding = UNIT_SHADOW_MAP) uniform sampler2DArrayShadow shadow_map;
 
 const float PCF_RADIUS_TEXELS = 1.5;
-const float GOLDEN_ANGLE = 2.39996323;
+// Rotation by the golden angle, pi (3 - sqrt 5), which spaces a Vogel disk evenly.
+const mat2 GOLDEN_ROTATION = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
 
 // Mean of comparisons on a Vogel disk around `at`: uv, layer, reference depth.
 float filtered_comparison(vec4 at)
 {
     uint taps = frame.options.z;
     float texel = 1.0 / float(textureSize(shadow_map, 0).x);
-    if (taps <= 1u)
-        return texture(shadow_map, at);
     float lit = 0.0;
-    float scale = PCF_RADIUS_TEXELS * texel * inversesqrt(float(taps));
+    float scale = taps > 1u ? PCF_RADIUS_TEXELS * texel * inversesqrt(float(taps)) : 0.0;
+    vec2 direction = vec2(1.0, 0.0);
     for (uint i = 0u; i < taps; i++) {
-        float angle = float(i) * GOLDEN_ANGLE;
-        vec2 offset = vec2(cos(angle), sin(angle)) * (scale * sqrt(float(i) + 0.5));
+        vec2 offset = direction * (scale * sqrt(float(i) + 0.5));
+        direction = GOLDEN_ROTATION * direction;
         lit += texture(shadow_map, at + vec4(offset, 0.0, 0.0));
     }
     return lit / float(taps);
@@ -43,7 +43,8 @@ bool is_inside(vec2 uv)
     return all(greaterThan(uv, vec2(margin))) && all(lessThan(uv, vec2(1.0 - margin)));
 }
 
-// Position in a lamp's or sun's view: uv, layer, reversed depth. `inside` tells whether it is seen.
+#if FLAT_SHADOWS
+// Position in a spot's or sun's view: uv, layer, reversed depth. `inside` tells whether it is seen.
 vec4 project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light,
                        out bool inside)
 {
@@ -76,15 +77,29 @@ uint refine_by_cascade(inout vec4 at)
     return found;
 }
 
-uint cube_face(vec3 direction)
+#endif
+
+#if CUBE_SHADOWS
+// Position in a lamp's cube of six views, as resident/lights.c lays them out: uv, layer, depth.
+vec4 project_to_cube(uint first_view, vec3 origin, vec3 position, vec3 normal, vec3 to_light)
 {
-    vec3 size = abs(direction);
-    if (size.x >= size.y && size.x >= size.z)
-        return direction.x > 0.0 ? 0u : 1u;
-    if (size.y >= size.z)
-        return direction.y > 0.0 ? 2u : 3u;
-    return direction.z > 0.0 ? 4u : 5u;
+    vec3 d = position - origin;
+    vec3 size = abs(d);
+    float major = max(size.x, max(size.y, size.z));
+    float lift = major * (2.0 * SHADOW_FACE_MARGIN) / float(textureSize(shadow_map, 0).x);
+    d += normal * (lift * offset_texels(normal, to_light));
+    bool is_x = size.x >= size.y && size.x >= size.z;
+    bool is_y = !is_x && size.y >= size.z;
+    float along = is_x ? d.x : is_y ? d.y : d.z;
+    float turn = along > 0.0 ? 1.0 : -1.0;
+    float right = is_x ? turn * d.z : is_y ? turn * d.x : -turn * d.x;
+    float up = is_y ? d.z : d.y;
+    float face = (is_x ? 0.0 : is_y ? 2.0 : 4.0) + (along > 0.0 ? 0.0 : 1.0);
+    float distance = max(abs(along), 1e-20);
+    vec2 place = vec2(right, -up) / (distance * SHADOW_FACE_MARGIN);
+    return vec4(0.5 + 0.5 * place, float(first_view) + face, frame.textures.y / distance);
 }
+#endif
 
 // Share of a light that reaches a point: 0 in shadow, 1 lit. `shadow` is the light's, `origin` its
 // position (unused for directional lights).
@@ -92,12 +107,20 @@ float shadow_visibility(uvec4 shadow, vec3 origin, vec3 position, vec3 normal, v
 {
     if (shadow.x == NO_SHADOW)
         return 1.0;
-    uint view_number = shadow.x + (shadow.y == 6u ? cube_face(position - origin) : 0u);
-    bool inside;
-    vec4 at = project_to_shadow(view_number, position, normal, to_light, inside);
-    if (shadow.w != 0u)
-        refine_by_cascade(at);
+    vec4 at = vec4(0.0);
+    bool inside = true;
+#if FLAT_SHADOWS
+    if (shadow.y == 1u) {
+        at = project_to_shadow(shadow.x, position, normal, to_light, inside);
+        if (shadow.w != 0u)
+            refine_by_cascade(at);
+    }
+#endif
+#if CUBE_SHADOWS
+    if (shadow.y == 6u)
+        at = project_to_cube(shadow.x, origin, position, normal, to_light);
+#endif
+    // Beyond what a spot or the sun sees nothing casts.
     float lit = filtered_comparison(at);
-    // Cube faces overlap a little, so only spots and the sun end: beyond them nothing casts.
-    return !inside && shadow.y != 6u ? 1.0 : lit;
+    return inside ? lit : 1.0;
 }

@@ -77,7 +77,7 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
     // The transmitted share of the diffuse part does not reflect: a surface with the reduced base
     // colour says the same, and leaves the metallic part alone.
     s.base_color *= 1.0 - through.transmission * (1.0 - s.metallic);
-#if LIGHTS
+#if PUNCTUAL_LIGHTS || AREA_LIGHTS
     sum += direct_light(s, pixel);
 #endif
 #if ENVIRONMENT

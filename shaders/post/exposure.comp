@@ -39,7 +39,7 @@ void main()
 #else
 layout(local_size_x = 1) in;
 
-const float MIDDLE_GREY = 0.18;
+const float MIDDLE_GREY = 0.3; // before the tone curve, which darkens it
 const float LOW_PERCENTILE = 0.3;
 const float HIGH_PERCENTILE = 0.95;
 

@@ -47,6 +47,9 @@
 
 #define NO_SHADOW 0xffffffffu
 
+// Cube faces and spots see a little more than they need, for the filter's taps at the rim.
+#define SHADOW_FACE_MARGIN 1.02f
+
 #define MAX_AREA_LIGHTS        16
 #define MAX_SHADOW_LAYERS      32
 #define MAX_CASCADES           3

@@ -20,7 +20,8 @@ struct frame_block {
     vec4 display;    // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, 1 if all
                      // materials are to be Blinn-Phong
     vec4 environment; // intensity, rotation about +Y, unused, unused
-    vec4 textures;    // most samples of an anisotropic look-up, unused, unused, unused
+    vec4 textures;    // most samples of an anisotropic look-up, near plane of lamps' shadow views,
+                      // unused, unused
     // From (u, v, depth) in the sun's view of the scene to each cascade, smallest first.
     vec4 cascade_scales[MAX_CASCADES]; // w: layer of the shadow map
     vec4 cascade_offsets[MAX_CASCADES];

@@ -13,7 +13,8 @@ void test_alpha()
     material_block material = materials[fragment_numbers.y];
     float alpha = material.base_color.a * fragment_alpha;
 #if COLOR_CLASSES > 0
-    texture_point point = texture_point(fragment_uv, dFdx(fragment_uv), dFdy(fragment_uv));
+    texture_point point = texture_point(UV_VECTOR(fragment_uv), UV_VECTOR(dFdx(fragment_uv)),
+                                       UV_VECTOR(dFdy(fragment_uv)));
     if ((material.info.z & (1u << TEXTURE_BASE_COLOR)) != 0u)
         alpha *= sample_color(material.info.y + TEXTURE_BASE_COLOR, point).a;
 #endif

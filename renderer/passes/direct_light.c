@@ -1,0 +1,38 @@
+// Direct light of punctual lights and planar emitters.
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *direct_light_skip_reason(const struct frame *frame)
+{
+    if (!frame_has(frame, EFFECT_PUNCTUAL_LIGHTS) && !frame_has(frame, EFFECT_AREA_LIGHTS))
+        return "no light in the scene";
+    return frame_shows_light(frame) ? NULL : "the debug view shows no light";
+}
+
+static bool direct_light_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    // The first pass to write radiance starts from the emission.
+    bool first = environment_pass.skip_reason(frame) != NULL;
+    const char *extra = frame->params->debug_view == DEBUG_VIEW_DIRECT ? "FIRST 2\n"
+                        : first                                        ? "FIRST 1\n"
+                                                                       : "FIRST 0\n";
+    const struct gpu_program *program =
+        pass_program(frame, pass, "light/direct_light.comp", extra, out_error);
+    if (!program)
+        return false;
+    pass_dispatch_pixels(frame, program);
+    return true;
+}
+
+const struct pass direct_light_pass = {
+    .name = "direct_light",
+    .effects_used = DIRECT_LIGHT_EFFECTS,
+    .use_count = 5,
+    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
+             {RESOURCE_DEPTH, ACCESS_READ},
+             {RESOURCE_SHADOW_MAP, ACCESS_READ},
+             {RESOURCE_LIGHT_MASKS, ACCESS_READ},
+             {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
+    .skip_reason = direct_light_skip_reason,
+    .run = direct_light_run,
+};

@@ -1,0 +1,29 @@
+// Emitted radiance alone, for scenes without light.
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *emission_skip_reason(const struct frame *frame)
+{
+    if (!frame_shows_light(frame))
+        return "the debug view shows no light";
+    bool other = !environment_pass.skip_reason(frame) || !direct_light_pass.skip_reason(frame);
+    return other ? "another light pass writes it" : NULL;
+}
+
+static bool emission_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    const struct gpu_program *program =
+        pass_program(frame, pass, "light/emission.comp", "", out_error);
+    if (!program)
+        return false;
+    pass_dispatch_pixels(frame, program);
+    return true;
+}
+
+const struct pass emission_pass = {
+    .name = "emission",
+    .use_count = 2,
+    .uses = {{RESOURCE_GBUFFER, ACCESS_READ}, {RESOURCE_RADIANCE, ACCESS_WRITE}},
+    .skip_reason = emission_skip_reason,
+    .run = emission_run,
+};

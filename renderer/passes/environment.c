@@ -1,0 +1,32 @@
+// Environment as background and ambient light; the first pass to write radiance where it runs.
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *environment_skip_reason(const struct frame *frame)
+{
+    if (!frame_has(frame, EFFECT_ENVIRONMENT))
+        return "no environment in the scene";
+    return frame->params->debug_view == DEBUG_VIEW_FINAL ? NULL
+                                                         : "the debug view shows no environment";
+}
+
+static bool environment_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    const struct gpu_program *program =
+        pass_program(frame, pass, "light/environment.comp", "", out_error);
+    if (!program)
+        return false;
+    pass_dispatch_pixels(frame, program);
+    return true;
+}
+
+const struct pass environment_pass = {
+    .name = "environment",
+    .effects_used = EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR),
+    .use_count = 3,
+    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
+             {RESOURCE_DEPTH, ACCESS_READ},
+             {RESOURCE_RADIANCE, ACCESS_WRITE}},
+    .skip_reason = environment_skip_reason,
+    .run = environment_run,
+};

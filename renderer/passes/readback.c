@@ -1,0 +1,22 @@
+// Copies the output into the ring of buffers that the host can read.
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static bool readback_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    (void)pass;
+    (void)out_error;
+    struct view *view = frame->view;
+    size_t offsets[3];
+    uint32_t pitches[3];
+    size_t bytes = view_output_layout(frame->params, offsets, pitches);
+    gpu_buffer_copy(view->ring[view->ring_next].pixels, 0, view->output, 0, bytes);
+    return true;
+}
+
+const struct pass readback_pass = {
+    .name = "readback",
+    .use_count = 1,
+    .uses = {{RESOURCE_OUTPUT, ACCESS_READ}},
+    .run = readback_run,
+};

@@ -1,0 +1,30 @@
+// Exposure, tone curve and transfer function into output pixels.
+#include <stdio.h>
+
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static bool tonemap_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    char extra[64];
+    snprintf(extra, sizeof(extra), "OUTPUT %d\nDISPLAY_READY %d\n", (int)frame->params->output,
+             !frame_shows_light(frame));
+    const struct gpu_program *program =
+        pass_program(frame, pass, "post/tonemap.comp", extra, out_error);
+    if (!program)
+        return false;
+    bool planar = frame->params->output == FRAME_OUTPUT_YCBCR;
+    uint32_t step_x = GROUP_EDGE * (planar ? 8 : 1), step_y = GROUP_EDGE * (planar ? 2 : 1);
+    gpu_dispatch(frame->gpu, program, (frame->params->width + step_x - 1) / step_x,
+                 (frame->params->height + step_y - 1) / step_y, 1);
+    return true;
+}
+
+const struct pass tonemap_pass = {
+    .name = "tonemap",
+    .use_count = 3,
+    .uses = {{RESOURCE_RADIANCE, ACCESS_READ},
+             {RESOURCE_EXPOSURE, ACCESS_READ},
+             {RESOURCE_OUTPUT, ACCESS_WRITE}},
+    .run = tonemap_run,
+};

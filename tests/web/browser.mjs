@@ -1,0 +1,101 @@
+// Starts Chromium for tests, and looks at the client's picture.
+import { createRequire } from 'node:module';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
+const { chromium } = require('playwright-core');
+
+// Where the release preset builds it.
+process.env.VOXCASTD ??= fileURLToPath(new URL('../../build/release/bin/voxcastd', import.meta.url));
+
+const FLAGS = [
+  '--headless',
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
+
+/** A Chromium with a profile of its own; `close` ends it and removes the profile. */
+export async function openBrowser(viewport = { width: 1280, height: 800 }) {
+  const profile = mkdtempSync(join(tmpdir(), 'voxcast-browser-'));
+  const context = await chromium.launchPersistentContext(profile, {
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: FLAGS,
+    viewport,
+  });
+  const close = async () => {
+    await context.close();
+    rmSync(profile, { recursive: true, force: true });
+  };
+  return { page: context.pages()[0], close };
+}
+
+/** Opens the client and waits for its first picture. */
+export async function openClient(page, daemon) {
+  await page.goto(`${daemon.http}/`);
+  await page.locator('#stage[data-frame]').waitFor();
+  await untilStill(page);
+}
+
+/** Waits until this page's edits are shown and the picture has not changed for `ms`. */
+export async function untilStill(page, ms = 500) {
+  await page.waitForFunction(() => globalThis.voxcast.timer.waiting.size === 0);
+  const frame = () => page.locator('#stage').getAttribute('data-frame');
+  let last;
+  do {
+    last = await frame();
+    await page.waitForTimeout(ms);
+  } while (last !== (await frame()));
+}
+
+/** The mean colour (0 to 255) of a part of the picture; the part is in shares of its size. */
+export function meanColor(page, part = { x: 0, y: 0, width: 1, height: 1 }) {
+  return page.evaluate((share) => {
+    const picture = document.getElementById('picture');
+    const canvas = new OffscreenCanvas(picture.width, picture.height);
+    const context = canvas.getContext('2d');
+    context.drawImage(picture, 0, 0);
+    const { data } = context.getImageData(
+      Math.floor(share.x * picture.width),
+      Math.floor(share.y * picture.height),
+      Math.max(1, Math.floor(share.width * picture.width)),
+      Math.max(1, Math.floor(share.height * picture.height)),
+    );
+    const sum = [0, 0, 0];
+    for (let i = 0; i < data.length; i++) if (i % 4 < 3) sum[i % 4] += data[i];
+    return sum.map((value) => value / (data.length / 4));
+  }, part);
+}
+
+/** The picture as bytes, to compare with another. */
+export function pixels(page) {
+  return page.evaluate(() => {
+    const picture = document.getElementById('picture');
+    const canvas = new OffscreenCanvas(picture.width, picture.height);
+    const context = canvas.getContext('2d');
+    context.drawImage(picture, 0, 0);
+    return [...context.getImageData(0, 0, picture.width, picture.height).data];
+  });
+}
+
+/** The mean difference (0 to 255) of two pictures of one size. */
+export function difference(a, b) {
+  if (a.length !== b.length) throw new Error('the pictures differ in size');
+  let sum = 0;
+  for (let i = 0; i < a.length; i++) sum += Math.abs(a[i] - b[i]);
+  return sum / a.length;
+}
+
+/** Types a value into the input of a parameter and settles it. */
+export async function setParameter(page, parameter, value) {
+  const input = page.locator(`[data-parameter="${parameter}"] input[type=text], [data-parameter="${parameter}"] input[type=number]`);
+  await input.first().fill(String(value));
+  await input.first().press('Enter');
+}

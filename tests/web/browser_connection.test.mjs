@@ -1,0 +1,86 @@
+// Proves what the client does when the server goes away, refuses a token or a foreign page: the test
+// stops and starts daemons under a running Chromium, and speaks to them by the ws package.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+
+import { difference, openBrowser, openClient, pixels, untilStill } from './browser.mjs';
+import { Client, startDaemon, stopDaemon } from './client.mjs';
+
+describe('a server that goes away', () => {
+  let daemon, browser;
+  before(async () => {
+    daemon = await startDaemon(['--scene', 'builtin:cornell']);
+    browser = await openBrowser();
+  });
+  after(async () => {
+    await browser?.close();
+    await stopDaemon(daemon);
+  });
+
+  test('is found again, with the picture from the same camera', async () => {
+    const { page } = browser;
+    await openClient(page, daemon);
+    await page.mouse.move(500, 400);
+    await page.mouse.down();
+    await page.mouse.move(600, 400, { steps: 5 });
+    await page.mouse.up();
+    await untilStill(page);
+    const turned = await pixels(page);
+    await page.locator('#tab-light').click();
+    await page.locator('[data-add-light=point]').click();
+    await page.locator('[data-light]').waitFor();
+    await stopDaemon(daemon);
+    const state = page.locator('#connection');
+    await page.waitForFunction(() => document.getElementById('connection').dataset.state !== 'open');
+    daemon = await startDaemon(['--scene', 'builtin:cornell', '--port', String(daemon.port)]);
+    await page.locator('#connection[data-state=open]').waitFor({ timeout: 15000 });
+    assert.equal(await state.innerText(), 'Connected');
+    await untilStill(page, 1000);
+    assert.equal(await page.locator('[data-light]').count(), 0, 'the new server has no such light');
+    assert.ok(difference(turned, await pixels(page)) < 1, 'the camera stays where it was');
+  });
+});
+
+describe('a server with a token', () => {
+  let daemon, browser, folder;
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'voxcast-token-'));
+    const file = join(folder, 'token');
+    writeFileSync(file, 'open sesame\n', { mode: 0o600 });
+    daemon = await startDaemon(['--scene', 'builtin:cornell', '--token-file', file]);
+    browser = await openBrowser();
+  });
+  after(async () => {
+    await browser?.close();
+    await stopDaemon(daemon);
+    rmSync(folder, { recursive: true });
+  });
+
+  test('asks for it, refuses a wrong one and takes the right one', async () => {
+    const { page } = browser;
+    await page.goto(`${daemon.http}/?token=wrong`);
+    const dialog = page.locator('#token-dialog[open]');
+    await dialog.waitFor();
+    assert.match(await dialog.innerText(), /refused/);
+    assert.doesNotMatch(page.url(), /token/);
+    assert.equal(await page.locator('#stage[data-frame]').count(), 0);
+    await dialog.locator('input').fill('also wrong');
+    await dialog.locator('button').click();
+    await dialog.waitFor();
+    await dialog.locator('input').fill('open sesame');
+    await dialog.locator('button').click();
+    await page.locator('#stage[data-frame]').waitFor();
+    await page.reload();
+    await page.locator('#stage[data-frame]').waitFor();
+    assert.equal(await dialog.count(), 0, 'kept for this tab');
+  });
+
+  test('refuses a page from elsewhere', async () => {
+    await assert.rejects(Client.open(daemon.url, { origin: 'http://elsewhere.example' }), { status: 403 });
+    const client = await Client.open(daemon.url, { origin: daemon.http });
+    await client.close();
+  });
+});

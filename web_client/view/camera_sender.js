@@ -1,0 +1,56 @@
+const KEEP = 512;
+
+/**
+ * Tells the server where the camera is, at most once per animation frame, and remembers the poses,
+ * so that what is drawn over a picture can use the camera that took it.
+ */
+export class CameraSender {
+  /**
+   * @param {import('../net/connection.js').Connection} connection
+   * @param {import('./camera.js').Camera} camera
+   */
+  constructor(connection, camera) {
+    this.connection = connection;
+    this.camera = camera;
+    this.revision = 0;
+    /** @type {Map<number, import('../math/projection.js').CameraPose>} */
+    this.poses = new Map();
+    this.isThrottled = false;
+    this.isChanged = false;
+    camera.addEventListener('changed', () => this.#changed());
+  }
+
+  /** The pose of the frames that carry a camera revision. @param {number} revision */
+  poseOf(revision) {
+    return this.poses.get(revision) ?? this.camera.pose;
+  }
+
+  /** Takes a pose that the server chose itself. */
+  adopt(/** @type {import('../math/projection.js').CameraPose} */ pose) {
+    this.camera.set(pose);
+  }
+
+  #changed() {
+    this.isChanged = true;
+    if (!this.isThrottled) this.#sendAndThrottle();
+  }
+
+  #sendAndThrottle() {
+    this.isChanged = false;
+    this.#send();
+    this.isThrottled = true;
+    requestAnimationFrame(() => {
+      this.isThrottled = false;
+      if (this.isChanged) this.#sendAndThrottle();
+    });
+  }
+
+  #send() {
+    const { pose } = this.camera;
+    const revision = ++this.revision;
+    this.poses.set(revision, pose);
+    if (this.poses.size > KEEP) this.poses.delete(this.poses.keys().next().value ?? 0);
+    // A lost or refused pose is made good by the next one.
+    this.connection.call('camera.set', { ...pose, revision }).catch(() => {});
+  }
+}

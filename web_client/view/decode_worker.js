@@ -1,0 +1,11 @@
+// Decodes JPEGs off the main thread: takes {id, jpeg}, answers {id, bitmap}; bitmap is null if the
+// JPEG is broken. The receiver owns the bitmap.
+self.onmessage = async (event) => {
+  const { id, jpeg } = event.data;
+  try {
+    const bitmap = await createImageBitmap(new Blob([jpeg], { type: 'image/jpeg' }));
+    self.postMessage({ id, bitmap }, { transfer: [bitmap] });
+  } catch {
+    self.postMessage({ id, bitmap: null });
+  }
+};

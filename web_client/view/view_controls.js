@@ -1,0 +1,80 @@
+import { chooseViewSize } from './view_size.js';
+
+const SETTLE_MS = 150;
+
+/**
+ * This client's view: its size follows the stage, its options follow the panel, and it pauses while
+ * the page is hidden.
+ * Event: `changed`, when options are other than before.
+ */
+export class ViewControls extends EventTarget {
+  /**
+   * @param {HTMLElement} stage
+   * @param {import('../net/connection.js').Connection} connection
+   * @param {(error: any) => void} onRefused
+   */
+  constructor(stage, connection, onRefused) {
+    super();
+    this.stage = stage;
+    this.connection = connection;
+    this.onRefused = onRefused;
+    this.sizeChoice = 'auto';
+    /** @type {'orbit' | 'fly'} */
+    this.mode = 'orbit';
+    /** @type {Record<string, any>} chosen options of group view */
+    this.options = {};
+    this.server = { isSoftware: false, maxWidth: 3840, maxHeight: 2160 };
+    /** @type {number | undefined} */
+    this.timer = undefined;
+    new ResizeObserver(() => {
+      clearTimeout(this.timer);
+      this.timer = setTimeout(() => this.send(), SETTLE_MS);
+    }).observe(stage);
+    document.addEventListener('visibilitychange', () => this.send());
+  }
+
+  /** A new connection: takes over what the server says of itself and keeps earlier choices. */
+  begin(/** @type {any} */ hello) {
+    this.server = {
+      isSoftware: hello.gl.software,
+      maxWidth: hello.limits.width,
+      maxHeight: hello.limits.height,
+    };
+    const { width: _width, height: _height, ...options } = hello.view;
+    this.options = { ...options, ...this.options };
+    this.send();
+  }
+
+  /** @param {Record<string, any>} set fields of group view */
+  configure(set) {
+    this.options = { ...this.options, ...set };
+    this.send();
+  }
+
+  /** @param {string} choice of RENDER_SIZES */
+  chooseSize(choice) {
+    this.sizeChoice = choice;
+    this.send();
+  }
+
+  /** @param {'orbit' | 'fly'} mode */
+  chooseMode(mode) {
+    this.mode = mode;
+    this.dispatchEvent(new Event('changed'));
+  }
+
+  /** The size that fits the stage now. */
+  get size() {
+    const stage = { width: this.stage.clientWidth, height: this.stage.clientHeight };
+    return chooseViewSize(stage, devicePixelRatio, this.sizeChoice, this.server);
+  }
+
+  send() {
+    if (!this.connection.isOpen || this.stage.clientWidth < 2 || this.stage.clientHeight < 2) return;
+    const paused = this.options.paused || document.hidden;
+    this.connection
+      .call('view.configure', { ...this.options, ...this.size, paused })
+      .catch(this.onRefused);
+    this.dispatchEvent(new Event('changed'));
+  }
+}
