@@ -198,7 +198,7 @@ static bool add_cameras(struct scene *scene)
         {"courtyard", {-11.0f, 1.75f, 1.7f}, {0.0f, 4.0f, -0.9f}, 1.1f},
         {"gallery", {-11.2f, 1.8f, 6.5f}, {2.0f, 2.1f, 5.6f}, 1.05f},
         {"upper floor", {-10.6f, 7.05f, 5.9f}, {2.5f, 5.6f, -3.2f}, 1.05f},
-        {"plants", {-5.2f, 1.25f, 1.5f}, {-6.3f, 0.75f, 3.6f}, 0.9f},
+        {"plants", {-4.3f, 1.35f, -1.7f}, {-6.0f, 0.85f, -3.6f}, 0.9f},
         {"from above", {-17.0f, 17.0f, 13.0f}, {0.0f, 4.0f, 0.0f}, 0.9f},
     };
     for (size_t i = 0; i < sizeof(cameras) / sizeof(cameras[0]); i++)

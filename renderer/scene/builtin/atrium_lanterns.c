@@ -28,7 +28,7 @@ static const float colors[LANTERN_COLORS][3] = {
 static uint32_t make_lantern(struct scene *scene, uint32_t glass, enum hanging hanging)
 {
     static const struct profile_point frame[] = {
-        {0.085f, 0.07f, 0}, {0.095f, 0.07f, 0}, {0.095f, 0.085f, 0}, {0.06f, 0.12f, 1},
+        {0.05f, 0.07f, 0},  {0.095f, 0.07f, 0}, {0.095f, 0.085f, 0}, {0.06f, 0.12f, 1},
         {0.025f, 0.14f, 0}, {0.02f, 0.17f, 0},  {0.0f, 0.18f, 0},
     };
     struct mesh_builder builder;
@@ -53,7 +53,7 @@ static bool make_lanterns(struct lantern_maker *maker)
         scene_material_init(&glass, name);
         glass.metallic = 0.0f;
         glass.roughness = 0.6f;
-        glass.emissive_strength = 6.0f;
+        glass.emissive_strength = 1.5f;
         glm_vec3_copy((float *)colors[color], glass.emissive);
         glm_vec3_copy((float *)colors[color], glass.base_color);
         uint32_t material = scene_add_material(maker->scene, &glass);
@@ -75,7 +75,7 @@ struct lantern_place {
 
 static bool add_lantern(struct lantern_maker *maker, const struct lantern_place *place)
 {
-    int color = (maker->count * 5) % LANTERN_COLORS;
+    int color = (maker->count * 5 + maker->count / LANTERN_COLORS * 3) % LANTERN_COLORS;
     char name[64];
     snprintf(name, sizeof(name), "lantern %03d", maker->count + 1);
     struct scene_light light;

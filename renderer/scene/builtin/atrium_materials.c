@@ -223,9 +223,9 @@ static void set_pictures(struct scene_material materials[ATRIUM_MATERIAL_COUNT],
         {ATRIUM_ROOF, SCENE_TEXTURE_NORMAL, images->roof_normal, 0.5f},
         {ATRIUM_TERRACOTTA, SCENE_TEXTURE_BASE_COLOR, images->terracotta, 1.0f},
         {ATRIUM_LEAF, SCENE_TEXTURE_BASE_COLOR, images->leaf, 1.0f},
-        {ATRIUM_RED_CLOTH, SCENE_TEXTURE_NORMAL, images->cloth_normal, 5.0f},
-        {ATRIUM_GREEN_CLOTH, SCENE_TEXTURE_NORMAL, images->cloth_normal, 5.0f},
-        {ATRIUM_BLUE_CLOTH, SCENE_TEXTURE_NORMAL, images->cloth_normal, 5.0f},
+        {ATRIUM_RED_CLOTH, SCENE_TEXTURE_NORMAL, images->cloth_normal, 10.0f},
+        {ATRIUM_GREEN_CLOTH, SCENE_TEXTURE_NORMAL, images->cloth_normal, 10.0f},
+        {ATRIUM_BLUE_CLOTH, SCENE_TEXTURE_NORMAL, images->cloth_normal, 10.0f},
     };
     for (size_t i = 0; i < sizeof(pictures) / sizeof(pictures[0]); i++)
         set_texture(&materials[pictures[i].material], pictures[i].slot, pictures[i].image,
@@ -265,8 +265,11 @@ bool atrium_add_materials(struct scene *scene)
         materials[i].roughness = looks[i].roughness;
         materials[i].metallic = looks[i].metallic;
         materials[i].double_sided = i >= ATRIUM_LEAF;
+        if (i >= ATRIUM_RED_CLOTH)
+            materials[i].normal_scale = 0.4f;
     }
     materials[ATRIUM_WATER].ior = 1.33f;
+    materials[ATRIUM_PLASTER].normal_scale = 0.5f;
     materials[ATRIUM_LEAF].alpha_mode = SCENE_ALPHA_MASK;
     set_pictures(materials, &images);
     for (int i = 0; i < ATRIUM_MATERIAL_COUNT; i++)

@@ -54,8 +54,8 @@ static void vault_normal(const void *context, double u, double v, double out_nor
     const double *rise = context;
     double angle = M_PI * (u - 0.5);
     out_normal[0] = 0.0;
-    out_normal[1] = -HALF_BAY * cos(angle);
-    out_normal[2] = -*rise * sin(angle);
+    out_normal[1] = HALF_BAY * cos(angle);
+    out_normal[2] = *rise * sin(angle);
     double length = hypot(out_normal[1], out_normal[2]);
     out_normal[1] /= length;
     out_normal[2] /= length;
@@ -75,6 +75,7 @@ static uint32_t make_vault(struct scene *scene)
             .columns = 24,
             .rows = 6,
             .texture_size = {4.6f, 1.5f},
+            .flipped = true, // seen from below
         };
         mesh_builder_add_surface(&builder, &params);
     }
@@ -113,13 +114,13 @@ static uint32_t make_ground_column(struct scene *scene)
         {0.3f, 0.14f, 0},   {0.318f, 0.16f, 1}, {0.325f, 0.19f, 1},  {0.318f, 0.22f, 1},
         {0.298f, 0.24f, 0}, {0.28f, 0.24f, 0},  {0.262f, 0.265f, 1}, {0.265f, 0.29f, 0},
         {0.285f, 0.29f, 0}, {0.293f, 0.31f, 1}, {0.285f, 0.33f, 0},  {0.262f, 0.33f, 0},
-        {0.248f, 0.36f, 1}, {0.242f, 0.4f, 0},
+        {0.248f, 0.36f, 1}, {0.242f, 0.4f, 0},  {0.2f, 0.4f, 0},
     };
     static const struct profile_point capital[] = {
-        {0.203f, 2.62f, 0},  {0.2f, 2.66f, 0},  {0.222f, 2.665f, 1}, {0.228f, 2.68f, 1},
-        {0.222f, 2.695f, 1}, {0.2f, 2.7f, 0},   {0.2f, 2.78f, 0},    {0.225f, 2.785f, 0},
-        {0.225f, 2.8f, 0},   {0.24f, 2.82f, 1}, {0.27f, 2.86f, 1},   {0.29f, 2.91f, 1},
-        {0.292f, 2.95f, 1},  {0.28f, 2.98f, 0}, {0.2f, 2.98f, 0},
+        {0.17f, 2.62f, 0},   {0.203f, 2.62f, 0},  {0.2f, 2.66f, 0},  {0.222f, 2.665f, 1},
+        {0.228f, 2.68f, 1},  {0.222f, 2.695f, 1}, {0.2f, 2.7f, 0},   {0.2f, 2.78f, 0},
+        {0.225f, 2.785f, 0}, {0.225f, 2.8f, 0},   {0.24f, 2.82f, 1}, {0.27f, 2.86f, 1},
+        {0.29f, 2.91f, 1},   {0.292f, 2.95f, 1},  {0.28f, 2.98f, 0}, {0.2f, 2.98f, 0},
     };
     struct mesh_builder builder;
     mesh_builder_init(&builder);
