@@ -12,10 +12,14 @@
 // every allocation of the picture being decoded on this thread must stay below this.
 static _Thread_local size_t allocation_limit_bytes;
 
+#ifndef __clang_analyzer__ // its findings in stb are not ours to mend
 static void *limited_realloc(void *old, size_t size)
 {
     return size > allocation_limit_bytes ? NULL : realloc(old, size);
 }
+
+#define STB_IMAGE_IMPLEMENTATION
+#endif
 
 #define STBI_MALLOC(size)       limited_realloc(NULL, size)
 #define STBI_REALLOC(old, size) limited_realloc(old, size)
@@ -28,9 +32,6 @@ static void *limited_realloc(void *old, size_t size)
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS SCENE_MAX_IMAGE_EDGE
 #define STB_IMAGE_STATIC
-#ifndef __clang_analyzer__ // its findings in stb are not ours to mend
-#define STB_IMAGE_IMPLEMENTATION
-#endif
 #pragma GCC diagnostic ignored "-Wunused-function" // stb declares more than these options define
 #include <stb_image.h>
 
@@ -117,7 +118,7 @@ struct image *image_decode(const uint8_t *bytes, size_t size, struct error *out_
 float *image_decode_radiance(const uint8_t *bytes, size_t size, uint32_t *out_width,
                              uint32_t *out_height, struct error *out_error)
 {
-    uint32_t width, height;
+    uint32_t width = 0, height = 0;
     if (size > INT_MAX || !stbi_is_hdr_from_memory(bytes, (int)size)) {
         error_set(out_error, "not a Radiance HDR picture");
         return NULL;
