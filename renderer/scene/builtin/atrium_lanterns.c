@@ -53,7 +53,7 @@ static bool make_lanterns(struct lantern_maker *maker)
         scene_material_init(&glass, name);
         glass.metallic = 0.0f;
         glass.roughness = 0.6f;
-        glass.emissive_strength = 1.5f;
+        glass.emissive_strength = 0.8f;
         glm_vec3_copy((float *)colors[color], glass.emissive);
         glm_vec3_copy((float *)colors[color], glass.base_color);
         uint32_t material = scene_add_material(maker->scene, &glass);
