@@ -198,6 +198,7 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->environment[0] = frame->resident->scene->environment.intensity;
     block->environment[1] = frame->resident->scene->environment.rotation_rad;
     block->textures[0] = frame->quality->texture_anisotropy;
+    block->textures[2] = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
     block->textures[1] = resident->diagonal_m * SHADOW_NEAR_FRACTION;
 }
 

@@ -130,7 +130,8 @@ static void find_uses(const struct resident *resident, int space_number,
 static bool create_arrays(struct resident *resident, struct texture_space *space, bool color,
                           const struct texture_class *classes)
 {
-    // Steps between levels do not show in roughness and normals as they do in colour.
+    // One level instead of two halves the cost on a CPU; shaders dither the choice, so that steps
+    // between levels do not show.
     bool software = gpu_get_info(resident->gpu)->software;
     for (uint32_t i = 0; i < space->class_count; i++) {
         space->classes[i] = gpu_texture_create(
@@ -142,7 +143,7 @@ static bool create_arrays(struct resident *resident, struct texture_space *space
                 .height = 1u << classes[i].edge_log2,
                 .layers = classes[i].layers,
                 .levels = classes[i].edge_log2 + 1,
-                .filter = software && !color ? GPU_FILTER_LINEAR_NEAREST_LEVEL : GPU_FILTER_LINEAR,
+                .filter = software ? GPU_FILTER_LINEAR_NEAREST_LEVEL : GPU_FILTER_LINEAR,
                 .repeat_u = true,
                 .repeat_v = true,
             });

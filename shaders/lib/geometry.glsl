@@ -153,6 +153,7 @@ surface load_surface(uint id, vec2 pixel, out layer through)
 #if TEXTURED
     if (material.info.z != 0u) {
         texture_point point;
+        point.level_dither = dither_level(pixel);
         vec3 weights_dx = plane_weights(t, direction + frame.ray_dx.xyz);
         vec3 weights_dy = plane_weights(t, direction + frame.ray_dy.xyz);
 #if SECOND_UV_SET

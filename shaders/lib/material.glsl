@@ -34,6 +34,7 @@ struct texture_point {
     UV_VECTOR uv;
     UV_VECTOR dx;
     UV_VECTOR dy;
+    float level_dither; // added to the level of detail
 };
 
 const float MAX_FOOTPRINT_TEXELS = 1e7;
@@ -96,6 +97,15 @@ vec4 sample_data_class(uint class_number, vec3 at, float lod)
 }
 #endif
 
+// Where samplers read one level only, picks it by chance, so that on average levels blend as they
+// would trilinearly. Interleaved gradient noise (Jimenez 2014, "Next Generation Post Processing in
+// Call of Duty: Advanced Warfare").
+float dither_level(vec2 pixel)
+{
+    float noise = fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
+    return frame.textures.z * (noise - 0.5);
+}
+
 // Where and how to sample: the footprint's place in the texture, its longer axis, level and number
 // of samples along the axis.
 struct footprint {
@@ -109,7 +119,7 @@ struct footprint {
 // Anisotropic filtering: trilinear samples along the longer axis of the pixel's footprint, at the
 // level that fits the shorter one (as EXT_texture_filter_anisotropic describes it). Done here
 // because the loops of software samplers grow without bound with the gradients.
-void set_filter(inout footprint f, vec2 dx, vec2 dy, float edge)
+void set_filter(inout footprint f, vec2 dx, vec2 dy, float level_dither, float edge)
 {
     float length_x = length(dx) * edge;
     float length_y = length(dy) * edge;
@@ -123,7 +133,7 @@ void set_filter(inout footprint f, vec2 dx, vec2 dy, float edge)
         return;
     }
     float minor = max(min(length_x, length_y), major / frame.textures.x);
-    f.lod = log2(minor);
+    f.lod = log2(minor) + level_dither;
     f.samples = clamp(ceil(major / max(minor, 1.0)), 1.0, frame.textures.x);
 }
 
@@ -149,7 +159,7 @@ footprint find_footprint(uint texture_number, texture_point point)
     footprint f;
     float edge = float(1u << ((bits >> TEXTURE_EDGE_BIT) & 15u));
     f.class_number = (bits >> TEXTURE_CLASS_BIT) & 15u;
-    set_filter(f, dx, dy, edge);
+    set_filter(f, dx, dy, point.level_dither, edge);
     if ((bits & TEXTURE_NEAREST) != 0u && f.lod < 0.0)
         at = (floor(at * edge) + 0.5) / edge;
     at.x = wrap_coordinate(at.x, (bits >> TEXTURE_WRAP_U_BIT) & 3u, edge);

@@ -21,7 +21,7 @@ struct frame_block {
                       // materials are to be Blinn-Phong
     vec4 environment; // intensity, rotation about +Y, unused, unused
     vec4 textures;    // most samples of an anisotropic look-up, near plane of lamps' shadow views,
-                      // unused, unused
+                      // 1 if samplers read one level only and want dithering, unused
     // From (u, v, depth) in the sun's view of the scene to each cascade, smallest first.
     vec4 cascade_scales[MAX_CASCADES]; // w: layer of the shadow map
     vec4 cascade_offsets[MAX_CASCADES];

@@ -14,7 +14,7 @@ void test_alpha()
     float alpha = material.base_color.a * fragment_alpha;
 #if COLOR_CLASSES > 0
     texture_point point = texture_point(UV_VECTOR(fragment_uv), UV_VECTOR(dFdx(fragment_uv)),
-                                       UV_VECTOR(dFdy(fragment_uv)));
+                                       UV_VECTOR(dFdy(fragment_uv)), 0.0);
     if ((material.info.z & (1u << TEXTURE_BASE_COLOR)) != 0u)
         alpha *= sample_color(material.info.y + TEXTURE_BASE_COLOR, point).a;
 #endif
