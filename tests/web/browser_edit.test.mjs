@@ -123,4 +123,18 @@ describe('edits', () => {
     const wall = await meanColor(ours.page, WALL);
     assert.ok(wall[1] > wall[2], `the wall is ${wall}`);
   });
+
+  test('in another scene the handle is where the click was', async () => {
+    const { page } = ours;
+    const before = await page.evaluate(() => globalThis.voxcast.document.data.epoch);
+    await page.locator('#scene-source').selectOption('builtin:material-grid');
+    await page.locator('.loader button').click();
+    await page.waitForFunction((epoch) => globalThis.voxcast.document.data.epoch !== epoch, before);
+    await untilStill(page, 1000);
+    await page.mouse.click(525, 455);
+    await page.locator('.tree [aria-selected=true]').waitFor();
+    const box = await page.locator('.plane').boundingBox();
+    assert.ok(Math.abs(box.x + box.width / 2 - 525) < 3, `x is ${box.x + box.width / 2}`);
+    assert.ok(Math.abs(box.y + box.height / 2 - 455) < 3, `y is ${box.y + box.height / 2}`);
+  });
 });
