@@ -393,6 +393,7 @@ bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, 
     camera_frame_init(&frame, camera);
     float direction[3];
     camera_ray(&frame, width, height, x + 0.5f, y + 0.5f, direction);
+    glm_vec3_normalize(direction); // so that the hit's distance is in metres
     return ray_scene_intersect(renderer->ray_scene, camera->eye, direction, FLT_MAX, out_hit);
 }
 

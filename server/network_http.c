@@ -14,7 +14,8 @@ static const char security_headers[] =
     "x-frame-options: DENY\r\n"
     "cross-origin-opener-policy: same-origin\r\n"
     "connection: close\r\n"
-    "content-security-policy: default-src 'self'; img-src 'self' blob: data:; "
+    "content-security-policy: default-src 'self'; img-src 'self' blob: data:; font-src 'self' "
+    "data:; "
     "worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' ws: wss:; "
     "object-src 'none'; base-uri 'none'; frame-ancestors 'none'\r\n";
 

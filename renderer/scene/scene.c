@@ -47,6 +47,10 @@ struct scene *scene_create(const char *name)
     if (scene) {
         copy_name(scene->name, sizeof(scene->name), name);
         scene->environment.intensity = 1.0f;
+        for (int c = 0; c < 3; c++) {
+            scene->environment.color[c] = 1.0f;
+            scene->environment.horizon_color[c] = 1.0f;
+        }
     }
     return scene;
 }

@@ -6,6 +6,14 @@ import { test } from 'node:test';
 import { EditTimer } from '../../web_client/scene/edit_timer.js';
 import { SceneDocument } from '../../web_client/scene/scene_document.js';
 
+// Node 18, Debian 12's, lacks what every browser has.
+globalThis.CustomEvent ??= class extends Event {
+  constructor(type, options) {
+    super(type, options);
+    this.detail = options?.detail ?? null;
+  }
+};
+
 const fresh = () => false;
 
 function makeDocument() {
