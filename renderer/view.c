@@ -31,6 +31,7 @@ static void destroy_sized_targets(struct view *view)
     gpu_buffer_destroy(&view->radiance);
     gpu_buffer_destroy(&view->light_masks);
     gpu_buffer_destroy(&view->fragments);
+    gpu_buffer_destroy(&view->transparent_tiles);
     view->width = 0;
     view->height = 0;
 }
@@ -166,10 +167,15 @@ bool view_prepare(struct view *view, const struct resident *resident,
     }
     if (effect_bits & EFFECT_BIT(EFFECT_TRANSPARENCY)) {
         size_t pixels = (size_t)width * height;
-        done = done && gpu_buffer_ensure(gpu, &view->fragments, "view.fragments", GPU_BUFFER_STATIC,
-                                         16 + pixels * 4 + pixels * BLENDED_PER_PIXEL * 8);
+        done = done &&
+               gpu_buffer_ensure(gpu, &view->fragments, "view.fragments", GPU_BUFFER_STATIC,
+                                 16 + pixels * 4 + pixels * BLENDED_PER_PIXEL * 8) &&
+               gpu_buffer_ensure(gpu, &view->transparent_tiles, "view.fragments", GPU_BUFFER_STATIC,
+                                 16 + 4 * (size_t)((width + GROUP_EDGE - 1) / GROUP_EDGE) *
+                                          ((height + GROUP_EDGE - 1) / GROUP_EDGE));
     } else {
         gpu_buffer_destroy(&view->fragments);
+        gpu_buffer_destroy(&view->transparent_tiles);
     }
     bool cascades =
         (effect_bits & EFFECT_BIT(EFFECT_SHADOWS)) && resident->directional_light != NO_SHADOW;
@@ -188,6 +194,7 @@ void view_bind(const struct view *view)
     gpu_bind_storage(gpu, BIND_OUTPUT, view->output);
     gpu_bind_storage(gpu, BIND_EXPOSURE, view->exposure);
     gpu_bind_storage(gpu, BIND_FRAGMENTS, view->fragments);
+    gpu_bind_storage(gpu, BIND_TILES, view->transparent_tiles);
     gpu_bind_texture(gpu, UNIT_IDS, view->ids);
     gpu_bind_texture(gpu, UNIT_DEPTH, view->depth);
 }

@@ -34,6 +34,7 @@ struct view {
     struct gpu_buffer *radiance;
     struct gpu_buffer *light_masks;
     struct gpu_buffer *fragments;
+    struct gpu_buffer *transparent_tiles;
     struct gpu_buffer *exposure;
     struct gpu_buffer *output;
     struct draw_list draws;

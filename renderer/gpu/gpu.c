@@ -10,6 +10,7 @@
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu/timer.h"
+#include "shared/bindings.h"
 
 #define GL_FENCE_WAIT_NS 2000000000ull
 
@@ -50,6 +51,8 @@ static bool check_limits(struct error *out_error)
         const char *text;
     } limits[] = {
         {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 16, "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS"},
+        {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, STORAGE_BINDINGS,
+         "GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"},
         {GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, 16, "GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS"},
         {GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, 8, "GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS"},
         {GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, 2, "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS"},
@@ -220,6 +223,14 @@ void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x
         return;
     use_program(gpu, program);
     glDispatchCompute(x, y, z);
+}
+
+void gpu_dispatch_indirect(struct gpu *gpu, const struct gpu_program *program,
+                           const struct gpu_buffer *arguments)
+{
+    use_program(gpu, program);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu_buffer_name(arguments));
+    glDispatchComputeIndirect(0);
 }
 
 void gpu_barrier(struct gpu *gpu)

@@ -45,6 +45,10 @@ void gpu_bind_texture(struct gpu *gpu, uint32_t slot, const struct gpu_texture *
 void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x, uint32_t y,
                   uint32_t z);
 
+// The same with the three counts read from the start of a buffer, as a shader left them there.
+void gpu_dispatch_indirect(struct gpu *gpu, const struct gpu_program *program,
+                           const struct gpu_buffer *arguments);
+
 // Makes writes of earlier commands visible to all later ones.
 void gpu_barrier(struct gpu *gpu);
 

@@ -18,8 +18,10 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
     struct view *view = frame->view;
     const struct gpu_program *list = pass_program(
         frame, pass, "visibility/visibility", "ALPHA_MASK 0\nSHADOW_VIEW 0\nLIST 1\n", out_error);
+    const struct gpu_program *tiles =
+        list ? pass_program(frame, pass, "light/transparent_tiles.comp", "", out_error) : NULL;
     const struct gpu_program *shade =
-        list ? pass_program(frame, pass, "light/transparency.comp", "", out_error) : NULL;
+        tiles ? pass_program(frame, pass, "light/transparency.comp", "", out_error) : NULL;
     if (!shade)
         return false;
     gpu_buffer_clear(view->fragments);
@@ -34,7 +36,13 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
     draw_list_draw(&view->draws, frame->resident, list, DRAW_TRANSPARENT, true);
     gpu_end_raster(frame->gpu);
     gpu_barrier(frame->gpu);
-    pass_dispatch_pixels(frame, shade);
+    static const uint32_t no_groups[4] = {0, 1, 1, 0};
+    gpu_buffer_write(view->transparent_tiles, 0, sizeof(no_groups), no_groups);
+    uint32_t tile_count = ((frame->width + GROUP_EDGE - 1) / GROUP_EDGE) *
+                          ((frame->height + GROUP_EDGE - 1) / GROUP_EDGE);
+    gpu_dispatch(frame->gpu, tiles, (tile_count + LINEAR_GROUP - 1) / LINEAR_GROUP, 1, 1);
+    gpu_barrier(frame->gpu);
+    gpu_dispatch_indirect(frame->gpu, shade, view->transparent_tiles);
     return true;
 }
 

@@ -1,5 +1,5 @@
-// Blended and transmissive layers over the opaque picture, per pixel in order of depth. In: lists of
-// fragments, geometry, materials, lights. Out: radiance in cd/m^2.
+// Blended and transmissive layers over the opaque picture, per pixel in order of depth, in the tiles
+// that hold any (one group each). In: tiles, lists of fragments, geometry, materials, lights. Out: radiance in cd/m^2.
 //
 // A layer covers `alpha` of the pixel. Its diffuse part lets the share `transmission` through
 // unscattered, tinted by base colour (KHR_materials_transmission, thin-walled) and absorbed along
@@ -17,6 +17,12 @@ layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
     uvec4 fragment_counts;
     uint fragment_words[];
+};
+
+layout(std430, binding = BIND_TILES) readonly buffer tile_storage
+{
+    uvec4 tile_arguments;
+    uint tiles[];
 };
 
 // Collects the ids of a pixel's nearest layers, farthest first. Ties go by id, so that the result
@@ -88,7 +94,8 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
 
 void main()
 {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
+    uint tile = tiles[gl_WorkGroupID.x];
+    uvec2 pixel = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE + gl_LocalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size.xy)))
         return;
     uint layers[MAX_BLENDED_LAYERS];

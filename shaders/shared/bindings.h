@@ -22,6 +22,8 @@
 #define BIND_EXPOSURE     13
 #define BIND_FRAGMENTS    14
 #define BIND_ENVIRONMENT  15
+#define BIND_TILES        16
+#define STORAGE_BINDINGS  17
 
 // Texture units
 #define UNIT_IDS              0

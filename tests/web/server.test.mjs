@@ -31,7 +31,7 @@ async function hello(daemon, params = {}, options = {}) {
 
 describe('one daemon', () => {
   let daemon;
-  before(async () => (daemon = await startDaemon(['--max-clients', '4'])));
+  before(async () => (daemon = await startDaemon(['--scene', 'builtin:cornell', '--max-clients', '4'])));
   after(() => stopDaemon(daemon));
 
   test('answers operators', async () => {
@@ -243,7 +243,7 @@ describe('one daemon', () => {
 });
 
 test('limits the rate of messages', async () => {
-  const daemon = await startDaemon(['--message-rate', '20']);
+  const daemon = await startDaemon(['--scene', 'builtin:cornell', '--message-rate', '20']);
   const client = await hello(daemon);
   client.acknowledge = false;
   for (let i = 0; i < 100; i++) client.notify('view.configure', { paused: true });
@@ -258,6 +258,8 @@ test('wants the token', async () => {
   writeFileSync(join(folder, 'token'), 'secret\n');
   writeFileSync(join(folder, 'viewer'), 'look\n');
   const daemon = await startDaemon([
+    '--scene',
+    'builtin:cornell',
     '--token-file', join(folder, 'token'), '--viewer-token-file', join(folder, 'viewer'),
   ]);
   await assert.rejects(Client.open(`${daemon.url}?token=wrong`), { status: 401 });
