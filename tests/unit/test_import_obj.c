@@ -247,15 +247,28 @@ static void test_libraries_stay_in_the_folder(void **state)
     scene_destroy(&scene);
 }
 
+// The archive is unpacked for the test and removed again.
 static void test_sponza(void **state)
 {
     (void)state;
-    const char *path = support_scene_path("sponza-obj/sponza.obj");
-    if (!path) {
+    const char *archive = support_scene_path("sponza-obj.tar.xz");
+    if (!archive) {
         skip();
     }
+    char folder[] = "/tmp/voxcast-sponza-XXXXXX", command[2200], path[200];
+    assert_non_null(mkdtemp(folder));
+    snprintf(command, sizeof(command), "tar -xJf '%s' -C '%s'", archive, folder);
+    assert_int_equal(system(command), 0);
+    snprintf(command, sizeof(command), "find '%s' -name '*.obj' -print -quit", folder);
+    FILE *found = popen(command, "r");
+    assert_non_null(found);
+    assert_non_null(fgets(path, sizeof(path), found));
+    pclose(found);
+    path[strcspn(path, "\n")] = '\0';
     struct error error;
     struct scene *scene = scene_import_obj(path, &error);
+    snprintf(command, sizeof(command), "rm -r '%s'", folder);
+    assert_int_equal(system(command), 0);
     assert_non_null(scene);
     support_check_scene(scene);
     assert_int_equal(scene_triangle_count(scene), 262087);
