@@ -192,6 +192,14 @@ static bool upload_background(struct resident *resident,
     return done;
 }
 
+static bool same_pictures(const struct scene_environment *a, const struct scene_environment *b)
+{
+    return a->type == b->type && a->pixels == b->pixels && a->width == b->width &&
+           a->height == b->height && memcmp(a->color, b->color, sizeof(a->color)) == 0 &&
+           memcmp(a->horizon_color, b->horizon_color, sizeof(a->horizon_color)) == 0 &&
+           memcmp(a->ground_color, b->ground_color, sizeof(a->ground_color)) == 0;
+}
+
 bool resident_upload_environment(struct resident *resident)
 {
     const struct scene_environment *environment = &resident->scene->environment;
@@ -210,5 +218,12 @@ bool resident_upload_environment(struct resident *resident)
                            sizeof(vectors)))
         return false;
     gpu_buffer_write(resident->environment, 0, sizeof(vectors), vectors);
-    return upload_levels(resident, environment) && upload_background(resident, environment);
+    // Intensity and rotation are uniforms: the pictures need not be made again for them.
+    const struct scene_environment *seen = &resident->environment_seen;
+    if (resident->environment_levels && same_pictures(seen, environment))
+        return true;
+    if (!upload_levels(resident, environment) || !upload_background(resident, environment))
+        return false;
+    resident->environment_seen = *environment;
+    return true;
 }

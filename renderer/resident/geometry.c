@@ -170,6 +170,26 @@ static void place_instance(struct resident *resident, struct resident_instance *
     }
 }
 
+// FNV-1a over what decides whether and how an instance casts a shadow, beside its placement.
+static uint64_t hash_casters(const struct resident *resident)
+{
+    const struct scene *scene = resident->scene;
+    uint64_t hash = 1469598103934665603ull;
+    for (uint32_t i = 0; i < resident->counts.instances; i++) {
+        const struct resident_instance *instance = &resident->instances[i];
+        const struct scene_material *material =
+            &scene->materials[scene->primitives[instance->primitive].material];
+        bool masked = material->alpha_mode == SCENE_ALPHA_MASK;
+        float values[4] = {(float)instance->group, instance->visible,
+                           masked ? material->alpha_cutoff : 0.0f,
+                           masked ? material->base_color[3] : 0.0f};
+        const unsigned char *bytes = (const unsigned char *)values;
+        for (size_t j = 0; j < sizeof(values); j++)
+            hash = (hash ^ bytes[j]) * 1099511628211ull;
+    }
+    return hash;
+}
+
 bool resident_upload_instances(struct resident *resident)
 {
     uint32_t count = resident->counts.instances;
@@ -182,6 +202,12 @@ bool resident_upload_instances(struct resident *resident)
     }
     for (uint32_t i = 0; i < count; i++)
         place_instance(resident, &resident->instances[i], &blocks[i]);
+    uint64_t caster_hash = hash_casters(resident);
+    const struct scene_revisions *now = &resident->scene->revisions;
+    if (caster_hash != resident->caster_hash || now->geometry != resident->seen.geometry ||
+        now->transforms != resident->seen.transforms)
+        resident->casters_changed = true;
+    resident->caster_hash = caster_hash;
     float diagonal = glm_vec3_distance(resident->bounds_min, resident->bounds_max);
     resident->diagonal_m = isfinite(diagonal) && diagonal > 0.0f ? diagonal : 1.0f;
     bool done = gpu_buffer_ensure(resident->gpu, &resident->instance_blocks, "geometry.instances",

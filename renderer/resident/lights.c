@@ -185,11 +185,14 @@ static bool keep_shadow_map(struct resident *resident, const struct light_builde
             resident->shadow_stale[i] = true;
     memcpy(resident->shadow_views, builder->views, layers * sizeof(builder->views[0]));
     resident->counts.shadow_layers = layers;
-    const struct scene_revisions *now = &resident->scene->revisions;
-    if (now->geometry != resident->seen.geometry || now->materials != resident->seen.materials ||
-        now->transforms != resident->seen.transforms)
+    if (resident->casters_changed)
         memset(resident->shadow_stale, true, sizeof(resident->shadow_stale));
-    resident->shadow_revision++;
+    bool changed = resident->casters_changed;
+    for (uint32_t i = 0; i < layers; i++)
+        changed = changed || resident->shadow_stale[i];
+    resident->casters_changed = false;
+    if (changed)
+        resident->shadow_revision++;
     return true;
 }
 

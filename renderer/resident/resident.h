@@ -111,8 +111,11 @@ struct resident {
     uint64_t shadow_epoch_seen;
     uint32_t sun_shadow_view; // of directional_light
     uint64_t shadow_revision; // counts changes of any shadow caster or light
+    uint64_t caster_hash;     // of what instances cast, but for where they are
+    bool casters_changed;     // since the shadow maps were last told
 
     struct gpu_buffer *environment;
+    struct scene_environment environment_seen; // what the pictures below were made from
     struct gpu_texture *environment_levels;
     struct gpu_texture *environment_background;
 };

@@ -92,6 +92,14 @@ static void test_only_what_changed_runs(void **state)
     assert_false(pass_ran(renderer, view, "shadow_map"));
     assert_true(pass_ran(renderer, view, "direct_light"));
 
+    // A colour casts no other shadow; hiding an object does.
+    struct scene_material material = scene->materials[0];
+    material.base_color[0] = 0.2f;
+    scene_set_material(scene, 0, &material);
+    draw_and_drop(renderer, view, &params);
+    assert_true(pass_ran(renderer, view, "gbuffer"));
+    assert_false(pass_ran(renderer, view, "shadow_map"));
+
     scene_set_node_visible(scene, 5, false);
     draw_and_drop(renderer, view, &params);
     assert_true(pass_ran(renderer, view, "visibility"));
