@@ -29,6 +29,7 @@ struct triangle {
     uvec3 words;   // where each vertex starts in `vertices`
     vec3 corner;   // first corner minus the eye
     vec3 edges[2]; // from the first corner
+    vec3 volumes[3]; // dotted with a ray: the determinant, and those of the second and third weight
 };
 
 vec2 fetch2(uint word)
@@ -60,6 +61,9 @@ triangle fetch_triangle(uint id)
     t.corner = linear * local + origin;
     t.edges[0] = linear * (fetch3(t.words.y) - local);
     t.edges[1] = linear * (fetch3(t.words.z) - local);
+    t.volumes[0] = cross(t.edges[1], t.edges[0]);
+    t.volumes[1] = cross(t.corner, t.edges[1]);
+    t.volumes[2] = cross(t.edges[0], t.corner);
     return t;
 }
 
@@ -67,11 +71,10 @@ triangle fetch_triangle(uint id)
 // Trumbore 1997). Also right outside the triangle.
 vec3 plane_weights(triangle t, vec3 direction)
 {
-    vec3 p = cross(direction, t.edges[1]);
-    float determinant = dot(t.edges[0], p);
+    float determinant = dot(direction, t.volumes[0]);
     float inverse = abs(determinant) > 1e-30 ? 1.0 / determinant : 0.0;
-    float b = -dot(t.corner, p) * inverse;
-    float c = dot(direction, cross(-t.corner, t.edges[0])) * inverse;
+    float b = dot(direction, t.volumes[1]) * inverse;
+    float c = dot(direction, t.volumes[2]) * inverse;
     return vec3(1.0 - b - c, b, c);
 }
 
@@ -131,7 +134,7 @@ surface load_surface(uint id, vec2 pixel, out layer through)
     surface s;
     s.view = -normalize(direction);
     s.position = frame.eye.xyz + t.corner + weights.y * t.edges[0] + weights.z * t.edges[1];
-    vec3 face = cross(t.edges[0], t.edges[1]);
+    vec3 face = -t.volumes[0];
     float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     s.geometric_normal = safe_normalize(face * mirrored, s.view);
     vec3 local_normal = interpolate3(t, 3u, weights);
