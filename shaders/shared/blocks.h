@@ -75,4 +75,16 @@ struct shadow_view_block {
     vec4 depth; // directional: world metres per unit of depth; perspective: near plane
 };
 
+#ifdef __STDC__
+#define BLOCK_VECTORS(block, count)                                                                \
+    static_assert(sizeof(struct block) == (count) * sizeof(vec4), #block " has no padding")
+BLOCK_VECTORS(frame_block, 16 + 2 * MAX_CASCADES);
+BLOCK_VECTORS(instance_block, 9);
+BLOCK_VECTORS(material_block, 7);
+BLOCK_VECTORS(texture_block, 3);
+BLOCK_VECTORS(light_block, 5);
+BLOCK_VECTORS(area_light_block, 8);
+BLOCK_VECTORS(shadow_view_block, 6);
+#endif
+
 #endif
