@@ -128,8 +128,9 @@ static bool start_threads(struct daemon *daemon, struct error *error)
         return error_set(error, "cannot start the threads");
     const char *address = options->listen;
     bool everywhere = strcmp(address, "0.0.0.0") == 0 || strcmp(address, "::") == 0;
-    printf("voxcastd: open http://%s:%u/\n", everywhere ? "127.0.0.1" : address,
-           network_get_port(daemon->network));
+    bool ipv6 = !everywhere && strchr(address, ':');
+    printf("voxcastd: open http://%s%s%s:%u/\n", ipv6 ? "[" : "",
+           everywhere ? "127.0.0.1" : address, ipv6 ? "]" : "", network_get_port(daemon->network));
     fflush(stdout);
     return true;
 }
