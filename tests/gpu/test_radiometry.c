@@ -160,6 +160,51 @@ static void test_emitter_lights_by_its_form_factor(void **state)
     scene_destroy(&scene);
 }
 
+// A metal floor reflects a wide bright wall, seen at ever lower angles.
+static void test_reflection_is_never_brighter_than_its_source(void **state)
+{
+    (void)state;
+    struct scene *scene = test_square_scene(10.0f, 1.0f);
+    struct scene_material floor = scene->materials[0];
+    floor.metallic = 1.0f;
+    floor.roughness = 0.15f;
+    scene_set_material(scene, 0, &floor);
+    struct scene_material wall = scene->materials[0];
+    wall.base_color[0] = wall.base_color[1] = wall.base_color[2] = 0.0f;
+    wall.emissive[0] = wall.emissive[1] = wall.emissive[2] = 1.0f;
+    uint32_t material = scene_add_material(scene, &wall);
+    const float corners[4][3] = {{-4, 6, 0}, {4, 6, 0}, {4, 6, 5}, {-4, 6, 5}};
+    struct scene_vertex vertices[4] = {0};
+    for (int i = 0; i < 4; i++) {
+        memcpy(vertices[i].position, corners[i], sizeof(corners[i]));
+        vertices[i].normal[1] = -1.0f;
+        for (int c = 0; c < 4; c++)
+            vertices[i].color[c] = 1.0f;
+    }
+    const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+    uint32_t mesh = scene_add_mesh(scene, "wall");
+    scene_add_primitive(scene, vertices, 4, indices, 6, material);
+    uint32_t node = scene_add_node(scene, "wall", SCENE_NONE);
+    scene->nodes[node].mesh = mesh;
+    scene_update_world_transforms(scene);
+
+    static const float heights_m[] = {0.3f, 1.0f, 3.0f};
+    for (size_t i = 0; i < sizeof(heights_m) / sizeof(heights_m[0]); i++) {
+        struct frame_params params = test_params(48, 32, FRAME_OUTPUT_LINEAR);
+        params.camera = (struct view_camera){.eye = {0, -8, heights_m[i]},
+                                             .target = {0, 6, 0.5f},
+                                             .up = {0, 0, 1},
+                                             .fov_y_rad = 0.5f};
+        struct test_picture picture = test_draw_linear(scene, &params);
+        float brightest = 0.0f;
+        for (size_t pixel = 0; pixel < (size_t)48 * 32; pixel++)
+            brightest = fmaxf(brightest, picture.pixels[4 * pixel]);
+        free(picture.pixels);
+        assert_close(brightest, 1.0, "brightest of wall and reflection");
+    }
+    scene_destroy(&scene);
+}
+
 static void test_a_thousand_lights_add_up(void **state)
 {
     (void)state;
@@ -209,6 +254,7 @@ int main(void)
         cmocka_unit_test(test_range_ends_as_the_extension_says),
         cmocka_unit_test(test_emission_is_radiance),
         cmocka_unit_test(test_emitter_lights_by_its_form_factor),
+        cmocka_unit_test(test_reflection_is_never_brighter_than_its_source),
         cmocka_unit_test(test_a_thousand_lights_add_up),
         cmocka_unit_test(test_shadow_blocks_all_light),
     };
