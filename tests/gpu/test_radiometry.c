@@ -205,6 +205,30 @@ static void test_reflection_is_never_brighter_than_its_source(void **state)
     scene_destroy(&scene);
 }
 
+// Under a sky of luminance 1 a white metal shows the directional albedo of its lobe: values by
+// numerical integration of the formulas of glTF 2.0, appendix B, seen head on.
+static void test_metal_under_a_sky_shows_its_albedo(void **state)
+{
+    (void)state;
+    static const double albedos[][2] = {{0.0, 1.0},   {0.2, 0.998}, {0.4, 0.968},
+                                        {0.6, 0.825}, {0.8, 0.555}, {1.0, 0.307}};
+    for (size_t i = 0; i < sizeof(albedos) / sizeof(albedos[0]); i++) {
+        struct scene *scene = test_square_scene(1.0f, 1.0f);
+        struct scene_material material = scene->materials[0];
+        material.metallic = 1.0f;
+        material.roughness = (float)albedos[i][0];
+        scene_set_material(scene, 0, &material);
+        scene->environment.type = SCENE_ENVIRONMENT_CONSTANT;
+        scene->environment.intensity = 1.0f;
+        for (int c = 0; c < 3; c++)
+            scene->environment.color[c] = 1.0f;
+        double value = measure(scene, 3.0f);
+        if (fabs(value - albedos[i][1]) > 0.01)
+            fail_msg("roughness %g: %g, expected %g", albedos[i][0], value, albedos[i][1]);
+        scene_destroy(&scene);
+    }
+}
+
 static void test_a_thousand_lights_add_up(void **state)
 {
     (void)state;
@@ -255,6 +279,7 @@ int main(void)
         cmocka_unit_test(test_emission_is_radiance),
         cmocka_unit_test(test_emitter_lights_by_its_form_factor),
         cmocka_unit_test(test_reflection_is_never_brighter_than_its_source),
+        cmocka_unit_test(test_metal_under_a_sky_shows_its_albedo),
         cmocka_unit_test(test_a_thousand_lights_add_up),
         cmocka_unit_test(test_shadow_blocks_all_light),
     };
