@@ -23,6 +23,8 @@ int cli_info(int argc, char **argv)
                             argv[optind - 1]);
         gpu = optarg;
     }
+    if (optind < argc)
+        return cli_fail(CLI_EXIT_USAGE, "unexpected argument \"%s\"", argv[optind]);
     struct error error;
     struct renderer *renderer = renderer_create(&(struct renderer_params){.gpu = gpu}, &error);
     if (!renderer)

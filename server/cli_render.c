@@ -332,7 +332,7 @@ static int render_frames(const struct render_options *options, struct renderer *
         renderer_view_get_statistics(renderer, view, &statistics);
         struct cJSON *json =
             cli_statistics_json(&measurement, &statistics, renderer_get_info(renderer), scene,
-                                options->width, options->height);
+                                params->width, params->height);
         if (!write_statistics(options->stats, json, &error))
             status = cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
         cJSON_Delete(json);
@@ -356,17 +356,21 @@ int cli_render(int argc, char **argv)
     struct scene *scene = scene_load(options.scene, &error);
     if (!scene)
         return cli_fail(CLI_EXIT_SCENE, "%s", error.message);
-    struct frame_params params = {.width = options.width, .height = options.height};
+    struct frame_params params = {0};
     struct view_options view;
     struct renderer *renderer = NULL;
     int status = 0;
     render_settings_init(&params.settings);
     view_options_init(&view);
+    view.width = options.width;
+    view.height = options.height;
     if (!choose_camera(&options, scene, &view.camera, &error) ||
         !apply_settings(&options, scene, &params.settings, &view, &error)) {
         status = cli_fail(CLI_EXIT_USAGE, "%s", error.message);
         goto done;
     }
+    params.width = view.width;
+    params.height = view.height;
     params.camera = view.camera;
     params.quality = view.quality;
     params.debug_view = view.debug_view;

@@ -44,6 +44,8 @@ struct network *network_create(const struct network_params *params, struct error
     if (params->web_dir[0] && !realpath(params->web_dir, network->web_root))
         log_write(LOG_WARN, "web_client_missing folder=\"%s\"", params->web_dir);
     lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
+    // With IPv6 enabled the library takes an IPv4 address for the whole machine.
+    bool ipv4 = !strchr(params->listen, ':');
     struct lws_context_creation_info info = {
         .port = (int)params->port,
         .iface = params->listen,
@@ -53,13 +55,17 @@ struct network *network_create(const struct network_params *params, struct error
         .uid = -1,
         .pt_serv_buf_size = SERVICE_BUFFER_BYTES,
         .retry_and_idle_policy = &probing,
-        .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_VALIDATE_UTF8,
+        .options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_VALIDATE_UTF8 |
+                   LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND |
+                   (ipv4 ? LWS_SERVER_OPTION_DISABLE_IPV6 : 0),
     };
     network->context = lws_create_context(&info);
     network->vhost = network->context ? lws_create_vhost(network->context, &info) : NULL;
     if (!network->vhost || lws_get_vhost_listen_port(network->vhost) <= 0) {
-        error_set(out_error, "cannot listen on %.100s port %u: is it in use?", params->listen,
-                  params->port);
+        error_set(
+            out_error,
+            "cannot listen on %.100s port %u: want a free port and an address of this machine",
+            params->listen, params->port);
         network_destroy(&network);
     }
     return network;

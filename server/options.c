@@ -145,8 +145,12 @@ static bool read_file(struct options *options, const char *path, struct error *e
     for (int number = 1; fine && fgets(line, sizeof(line), file); number++) {
         char where[300];
         snprintf(where, sizeof(where), "%.200s:%d", path, number);
-        fine = read_line(options, line, where, error);
+        fine = strchr(line, '\n') || feof(file)
+                   ? read_line(options, line, where, error)
+                   : error_set(error, "%s: longer than %zu bytes", where, sizeof(line) - 2);
     }
+    if (fine && ferror(file))
+        fine = error_set(error, "config file %.200s: %s", path, strerror(errno));
     fclose(file);
     return fine;
 }

@@ -116,6 +116,14 @@ static void send_loaded(struct render_thread *thread, bool other_source)
     }
 }
 
+// Clients find the same texts in `scene.get`.
+static void log_warnings(const struct render_thread *thread)
+{
+    for (uint32_t i = 0; i < thread->scene->warning_count; i++)
+        log_write(LOG_WARN, "scene_warning source=\"%s\" text=\"%s\"", thread->scene_label,
+                  thread->scene->warnings[i]);
+}
+
 // Shows the scene and lets go of the old one. On failure the old one stays and `scene` is freed.
 static bool swap_scene(struct render_thread *thread, struct scene *scene, struct error *error)
 {
@@ -148,6 +156,7 @@ static bool swap_scene(struct render_thread *thread, struct scene *scene, struct
     pthread_mutex_unlock(&thread->status_mutex);
     send_loaded(thread, other_source);
     render_mark_dirty(thread, NULL);
+    log_warnings(thread);
     log_write(LOG_INFO, "scene_shown source=\"%s\" nodes=%u triangles=%llu warnings=%u",
               thread->scene_label, scene->node_count,
               (unsigned long long)scene_triangle_count(scene), scene->warning_count);

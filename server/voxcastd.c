@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "protocol/limits.h"
@@ -40,6 +41,14 @@ static bool read_token(const char *path, char *out, struct error *error)
                          PROTOCOL_MAX_TOKEN_BYTES);
     strcpy(out, line);
     return true;
+}
+
+static bool check_scene_dir(const char *path, struct error *error)
+{
+    struct stat status;
+    if (!path[0] || (stat(path, &status) == 0 && S_ISDIR(status.st_mode)))
+        return true;
+    return error_set(error, "scene-dir %.200s: want a folder", path);
 }
 
 static void choose_web_dir(struct options *options)
@@ -128,8 +137,9 @@ static bool start_threads(struct daemon *daemon, struct error *error)
         return error_set(error, "cannot start the threads");
     const char *address = options->listen;
     bool everywhere = strcmp(address, "0.0.0.0") == 0 || strcmp(address, "::") == 0;
-    printf("voxcastd: open http://%s:%u/\n", everywhere ? "127.0.0.1" : address,
-           network_get_port(daemon->network));
+    bool ipv6 = !everywhere && strchr(address, ':');
+    printf("voxcastd: open http://%s%s%s:%u/\n", ipv6 ? "[" : "",
+           everywhere ? "127.0.0.1" : address, ipv6 ? "]" : "", network_get_port(daemon->network));
     fflush(stdout);
     return true;
 }
@@ -177,7 +187,7 @@ int main(int argument_count, char **arguments)
     signal(SIGPIPE, SIG_IGN);
     log_set_level(daemon.options.log_level);
     choose_web_dir(&daemon.options);
-    bool fine = result == OPTIONS_RUN &&
+    bool fine = result == OPTIONS_RUN && check_scene_dir(daemon.options.scene_dir, &error) &&
                 read_token(daemon.options.token_file, daemon.token, &error) &&
                 read_token(daemon.options.viewer_token_file, daemon.viewer_token, &error) &&
                 create_parts(&daemon, &error) && start_threads(&daemon, &error);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "renderer/resident/resident.h"
+#include "shaders/shared/bindings.h"
 
 #define LEVEL_COUNT         6u
 #define LEVEL_EDGE          64u
@@ -12,6 +13,9 @@
 #define SH_SAMPLE_ROWS      64u
 #define MAX_RADIANCE        60000.0f // of RGBA16F texels, before intensity
 #define ENVIRONMENT_VECTORS 13u
+#define BRDF_EDGE           ((uint32_t)ENVIRONMENT_BRDF_EDGE)
+#define BRDF_SAMPLES        256u
+#define BRDF_MIN_COSINE     1e-3f
 
 // Radiance from a direction, of an unrotated environment of intensity 1.
 static void sample_environment(const struct scene_environment *environment, const float d[3],
@@ -133,6 +137,45 @@ static void blur_direction(const struct scene_environment *environment, const fl
         out_color[c] = fminf((float)(sum[c] / weight), MAX_RADIANCE);
 }
 
+// Integral of the GGX lobe of `shaders/lib/brdf.glsl` over all directions of light, split into
+// scale and bias of F0 under Schlick's Fresnel; half vectors are importance sampled.
+static void integrate_brdf(float roughness, float n_v, float out_scale_bias[2])
+{
+    float a2 = fmaxf(powf(roughness, 4.0f), 1e-6f), sine_v = sqrtf(1.0f - n_v * n_v);
+    double scale = 0.0, bias = 0.0;
+    for (uint32_t i = 0; i < BRDF_SAMPLES; i++) {
+        float e1 = ((float)i + 0.5f) / (float)BRDF_SAMPLES;
+        float e2 = fmodf((float)i * 0.618034f, 1.0f);
+        float n_h = sqrtf((1.0f - e1) / (1.0f + (a2 - 1.0f) * e1));
+        float sine_h = sqrtf(fmaxf(0.0f, 1.0f - n_h * n_h));
+        float v_h = sine_v * sine_h * cosf(2.0f * (float)M_PI * e2) + n_v * n_h;
+        float n_l = 2.0f * v_h * n_h - n_v;
+        if (n_l <= 0.0f || v_h <= 0.0f)
+            continue;
+        float l = n_v * sqrtf(n_l * n_l * (1.0f - a2) + a2);
+        float v = n_l * sqrtf(n_v * n_v * (1.0f - a2) + a2);
+        float share = 0.5f / (l + v) * 4.0f * n_l * v_h / n_h;
+        float fresnel = powf(1.0f - fminf(v_h, 1.0f), 5.0f);
+        scale += share * (1.0f - fresnel);
+        bias += share * fresnel;
+    }
+    out_scale_bias[0] = (float)(scale / BRDF_SAMPLES);
+    out_scale_bias[1] = (float)(bias / BRDF_SAMPLES);
+}
+
+// Fills the nodes as `shaders/lib/environment.glsl` describes them.
+static void tabulate_brdf(vec4 *nodes)
+{
+    for (uint32_t i = 0; i < BRDF_EDGE * BRDF_EDGE; i++) {
+        uint32_t column = i % BRDF_EDGE;
+        float roughness = (float)(i / BRDF_EDGE) / (float)(BRDF_EDGE - 1);
+        float root = (float)column / (float)(BRDF_EDGE - 1);
+        integrate_brdf(roughness, fmaxf(root * root, BRDF_MIN_COSINE), nodes[i]);
+        if (column > 0)
+            memcpy(nodes[i - 1] + 2, nodes[i], 2 * sizeof(float));
+    }
+}
+
 static bool upload_levels(struct resident *resident, const struct scene_environment *environment)
 {
     // A constant or smooth sky needs no more than a few texels.
@@ -203,9 +246,11 @@ static bool same_pictures(const struct scene_environment *a, const struct scene_
 bool resident_upload_environment(struct resident *resident)
 {
     const struct scene_environment *environment = &resident->scene->environment;
-    vec4 vectors[ENVIRONMENT_VECTORS] = {{0}};
-    if (environment->type != SCENE_ENVIRONMENT_NONE)
+    vec4 vectors[ENVIRONMENT_VECTORS + ENVIRONMENT_BRDF_EDGE * ENVIRONMENT_BRDF_EDGE] = {{0}};
+    if (environment->type != SCENE_ENVIRONMENT_NONE) {
         project_harmonics(environment, vectors);
+        tabulate_brdf(vectors + ENVIRONMENT_VECTORS);
+    }
     vectors[9][0] = (float)environment->type;
     vectors[9][1] = (float)LEVEL_COUNT;
     bool gradient = environment->type == SCENE_ENVIRONMENT_GRADIENT;

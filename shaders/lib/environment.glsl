@@ -7,6 +7,9 @@ layout(std430, binding = BIND_ENVIRONMENT) readonly buffer environment_storage
     // 0 to 2, of an unrotated environment of intensity 1; then type, levels, -, -; then colours
     // of zenith, horizon and ground.
     vec4 environment_data[13];
+    // Directional albedo of the GGX lobe as scale and bias of F0: a row for each roughness, in it xy
+    // at a node of sqrt(n.v) and zw at the next.
+    vec4 environment_brdf_nodes[ENVIRONMENT_BRDF_EDGE * ENVIRONMENT_BRDF_EDGE];
 };
 
 layout(binding = UNIT_ENVIRONMENT) uniform sampler2DArray environment_levels; // by roughness
@@ -47,13 +50,16 @@ vec3 environment_diffuse(vec3 normal)
     return max(sum, 0.0) * frame.environment.x;
 }
 
-// Directional albedo of the GGX lobe as scale and bias of F0 (Lazarov 2013, fitted by Karis 2014,
-// "Physically Based Shading on Mobile").
+// Scale and bias of F0 (the split sum of Karis 2013, "Real Shading in Unreal Engine 4").
 vec2 environment_brdf(float roughness, float n_v)
 {
-    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-    float a = min(r.x * r.x, exp2(-9.28 * n_v)) * r.x + r.y;
-    return vec2(-1.04, 1.04) * a + r.zw;
+    vec2 at = clamp(vec2(sqrt(n_v), roughness), 0.0, 1.0) * float(ENVIRONMENT_BRDF_EDGE - 1);
+    uvec2 node = min(uvec2(at), uvec2(ENVIRONMENT_BRDF_EDGE - 2));
+    vec2 t = at - vec2(node);
+    uint index = node.y * uint(ENVIRONMENT_BRDF_EDGE) + node.x;
+    vec4 smoother = environment_brdf_nodes[index];
+    vec4 rougher = environment_brdf_nodes[index + uint(ENVIRONMENT_BRDF_EDGE)];
+    return mix(mix(smoother.xy, smoother.zw, t.x), mix(rougher.xy, rougher.zw, t.x), t.y);
 }
 
 vec3 environment_specular(vec3 direction, float roughness)
@@ -76,9 +82,8 @@ vec3 environment_light(surface s)
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
-    // The fit dips a little below 0 at some angles.
-    vec3 reflected = max(f0 * scale_bias.x + f90 * scale_bias.y, 0.0);
-    vec3 dielectric = max(s.f0 * scale_bias.x + s.f90 * scale_bias.y, 0.0);
+    vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
+    vec3 dielectric = s.f0 * scale_bias.x + s.f90 * scale_bias.y;
     float kept = 1.0 - max(dielectric.r, max(dielectric.g, dielectric.b));
     vec3 diffuse = s.base_color * ((1.0 - s.metallic) * kept) * environment_diffuse(s.normal);
     vec3 mirror = reflect(-s.view, s.normal);

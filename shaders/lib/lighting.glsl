@@ -144,7 +144,9 @@ vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reve
     // A lobe narrower than the emitter sees radiance, not intensity: the widened lobe integrates
     // to at most one over the emitter.
     float widened = sqrt(alpha * alpha + solid_angle / (4.0 * PI));
-    return specular_brdf_cosine(s, l, min(widened, 1.0)) * light.radiance.rgb * solid_angle;
+    // At grazing angles the widening does not suffice; no surface reflects more than it receives.
+    vec3 share = min(specular_brdf_cosine(s, l, min(widened, 1.0)) * solid_angle, 1.0);
+    return share * light.radiance.rgb;
 }
 
 #endif

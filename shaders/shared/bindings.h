@@ -36,10 +36,11 @@
 #define UNIT_BACKGROUND       15
 
 // Work groups
-#define GROUP_EDGE      8
-#define LIGHT_TILE_EDGE 16
-#define LINEAR_GROUP    64
-#define HISTOGRAM_BINS  128
+#define GROUP_EDGE            8
+#define LIGHT_TILE_EDGE       16
+#define ENVIRONMENT_BRDF_EDGE 16 // nodes of its table in roughness and in sqrt(n.v)
+#define LINEAR_GROUP          64
+#define HISTOGRAM_BINS        128
 
 // A visibility id is 1 + (block * 2^ID_BLOCK_BITS + triangle in block): 0 is the background.
 #define ID_BLOCK_BITS 7

@@ -160,6 +160,75 @@ static void test_emitter_lights_by_its_form_factor(void **state)
     scene_destroy(&scene);
 }
 
+// A metal floor reflects a wide bright wall, seen at ever lower angles.
+static void test_reflection_is_never_brighter_than_its_source(void **state)
+{
+    (void)state;
+    struct scene *scene = test_square_scene(10.0f, 1.0f);
+    struct scene_material floor = scene->materials[0];
+    floor.metallic = 1.0f;
+    floor.roughness = 0.15f;
+    scene_set_material(scene, 0, &floor);
+    struct scene_material wall = scene->materials[0];
+    wall.base_color[0] = wall.base_color[1] = wall.base_color[2] = 0.0f;
+    wall.emissive[0] = wall.emissive[1] = wall.emissive[2] = 1.0f;
+    uint32_t material = scene_add_material(scene, &wall);
+    const float corners[4][3] = {{-4, 6, 0}, {4, 6, 0}, {4, 6, 5}, {-4, 6, 5}};
+    struct scene_vertex vertices[4] = {0};
+    for (int i = 0; i < 4; i++) {
+        memcpy(vertices[i].position, corners[i], sizeof(corners[i]));
+        vertices[i].normal[1] = -1.0f;
+        for (int c = 0; c < 4; c++)
+            vertices[i].color[c] = 1.0f;
+    }
+    const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+    uint32_t mesh = scene_add_mesh(scene, "wall");
+    scene_add_primitive(scene, vertices, 4, indices, 6, material);
+    uint32_t node = scene_add_node(scene, "wall", SCENE_NONE);
+    scene->nodes[node].mesh = mesh;
+    scene_update_world_transforms(scene);
+
+    static const float heights_m[] = {0.3f, 1.0f, 3.0f};
+    for (size_t i = 0; i < sizeof(heights_m) / sizeof(heights_m[0]); i++) {
+        struct frame_params params = test_params(48, 32, FRAME_OUTPUT_LINEAR);
+        params.camera = (struct view_camera){.eye = {0, -8, heights_m[i]},
+                                             .target = {0, 6, 0.5f},
+                                             .up = {0, 0, 1},
+                                             .fov_y_rad = 0.5f};
+        struct test_picture picture = test_draw_linear(scene, &params);
+        float brightest = 0.0f;
+        for (size_t pixel = 0; pixel < (size_t)48 * 32; pixel++)
+            brightest = fmaxf(brightest, picture.pixels[4 * pixel]);
+        free(picture.pixels);
+        assert_close(brightest, 1.0, "brightest of wall and reflection");
+    }
+    scene_destroy(&scene);
+}
+
+// Under a sky of luminance 1 a white metal shows the directional albedo of its lobe: values by
+// numerical integration of the formulas of glTF 2.0, appendix B, seen head on.
+static void test_metal_under_a_sky_shows_its_albedo(void **state)
+{
+    (void)state;
+    static const double albedos[][2] = {{0.0, 1.0},   {0.2, 0.998}, {0.4, 0.968},
+                                        {0.6, 0.825}, {0.8, 0.555}, {1.0, 0.307}};
+    for (size_t i = 0; i < sizeof(albedos) / sizeof(albedos[0]); i++) {
+        struct scene *scene = test_square_scene(1.0f, 1.0f);
+        struct scene_material material = scene->materials[0];
+        material.metallic = 1.0f;
+        material.roughness = (float)albedos[i][0];
+        scene_set_material(scene, 0, &material);
+        scene->environment.type = SCENE_ENVIRONMENT_CONSTANT;
+        scene->environment.intensity = 1.0f;
+        for (int c = 0; c < 3; c++)
+            scene->environment.color[c] = 1.0f;
+        double value = measure(scene, 3.0f);
+        if (fabs(value - albedos[i][1]) > 0.01)
+            fail_msg("roughness %g: %g, expected %g", albedos[i][0], value, albedos[i][1]);
+        scene_destroy(&scene);
+    }
+}
+
 static void test_a_thousand_lights_add_up(void **state)
 {
     (void)state;
@@ -209,6 +278,8 @@ int main(void)
         cmocka_unit_test(test_range_ends_as_the_extension_says),
         cmocka_unit_test(test_emission_is_radiance),
         cmocka_unit_test(test_emitter_lights_by_its_form_factor),
+        cmocka_unit_test(test_reflection_is_never_brighter_than_its_source),
+        cmocka_unit_test(test_metal_under_a_sky_shows_its_albedo),
         cmocka_unit_test(test_a_thousand_lights_add_up),
         cmocka_unit_test(test_shadow_blocks_all_light),
     };

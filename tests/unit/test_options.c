@@ -56,6 +56,19 @@ static void refuse(char *argument, char *value, char *variable, const char *mess
         fail_msg("\"%s\" lacks \"%s\"", error.message, message);
 }
 
+static void unreadable_files_are_named(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/voxcast-options-XXXXXX";
+    int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    dprintf(descriptor, "port = 1001\nscene = %02000d\n", 0);
+    close(descriptor);
+    refuse("--config", path, NULL, ":2: longer than");
+    unlink(path);
+    refuse("--config", "/tmp", NULL, "config file /tmp: Is a directory");
+}
+
 static void wrong_options_are_named(void **state)
 {
     (void)state;
@@ -88,6 +101,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flags_win_then_environment_then_file),
+        cmocka_unit_test(unreadable_files_are_named),
         cmocka_unit_test(wrong_options_are_named),
         cmocka_unit_test(help_names_every_option),
     };

@@ -253,6 +253,24 @@ test('limits the rate of messages', async () => {
   assert.equal(await stopDaemon(daemon), 0);
 });
 
+test('listens on its address alone', async () => {
+  const daemon = await startDaemon();
+  // All of 127.0.0.0/8 is this machine, but only 127.0.0.1 was asked for.
+  const answer = await new Promise((resolve) => {
+    const socket = net.connect(daemon.port, '127.0.0.2', () => {
+      socket.destroy();
+      resolve('connected');
+    });
+    socket.on('error', (error) => resolve(error.code));
+  });
+  assert.equal(answer, 'ECONNREFUSED');
+  assert.equal(await stopDaemon(daemon), 0);
+  await assert.rejects(
+    startDaemon(['--listen', '203.0.113.1', '--port', String(daemon.port)]),
+    /cannot listen on 203\.0\.113\.1/,
+  );
+});
+
 test('wants the token', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'voxcast-'));
   writeFileSync(join(folder, 'token'), 'secret\n');
