@@ -72,6 +72,7 @@ static bool sphere_is_outside(const vec4 planes[6], const float center[3], float
 // How one instance is culled: everything that stays the same over its clusters.
 struct instance_cull {
     const vec4 *planes;
+    float clip_rows[4][4]; // of clip_from_local
     float matrix[16];
     float scale;
     bool by_cone;
@@ -80,9 +81,18 @@ struct instance_cull {
 
 static void instance_cull_init(struct instance_cull *cull, const struct resident *resident,
                                const struct resident_instance *instance, const vec4 planes[6],
-                               const float *eye)
+                               const mat4 clip_from_world, const float *eye)
 {
     cull->planes = planes;
+    const float *m = resident->scene->nodes[instance->node].world_from_local;
+    // In double: far from the origin the products nearly cancel.
+    for (int row = 0; row < 4; row++)
+        for (int column = 0; column < 4; column++) {
+            double sum = 0.0;
+            for (int i = 0; i < 4; i++)
+                sum += (double)clip_from_world[i][row] * m[column * 4 + i];
+            cull->clip_rows[row][column] = (float)sum;
+        }
     memcpy(cull->matrix, resident->scene->nodes[instance->node].world_from_local,
            sizeof(cull->matrix));
     cull->scale = instance->scale;
@@ -117,10 +127,9 @@ static bool cluster_is_hidden(const struct instance_cull *cull,
 
 // Appends one draw of triangles first .. first + count - 1 of an instance.
 static void append_draw(struct draw_list *list, uint32_t *total, const struct resident *resident,
-                        uint32_t instance_number, uint32_t first, uint32_t count)
+                        const struct resident_instance *instance, const struct instance_cull *cull,
+                        uint32_t first, uint32_t count)
 {
-    const struct resident_instance *instance = &resident->instances[instance_number];
-    const float *m = resident->scene->nodes[instance->node].world_from_local;
     list->scratch_commands[*total] = (struct gpu_draw){
         .index_count = 3 * count,
         .instance_count = 1,
@@ -128,13 +137,9 @@ static void append_draw(struct draw_list *list, uint32_t *total, const struct re
         .base_instance = *total,
     };
     struct gpu_draw_record *record = &list->scratch_records[*total];
-    for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 4; column++)
-            record->world_rows[row][column] = m[column * 4 + row];
-    record->numbers[0] = instance->first_id + 1;
-    record->numbers[1] = resident->scene->primitives[instance->primitive].material;
-    record->numbers[2] = instance_number;
-    record->numbers[3] = 0;
+    memcpy(record->clip_rows, cull->clip_rows, sizeof(record->clip_rows));
+    record->first_id = instance->first_id + 1;
+    record->material = resident->scene->primitives[instance->primitive].material;
     (*total)++;
 }
 
@@ -156,12 +161,12 @@ static void append_instance(struct draw_list *list, uint32_t *total,
                 run_first = at;
             run_count += count;
         } else if (run_count > 0) {
-            append_draw(list, total, resident, instance_number, run_first, run_count);
+            append_draw(list, total, resident, instance, cull, run_first, run_count);
             run_count = 0;
         }
     }
     if (run_count > 0)
-        append_draw(list, total, resident, instance_number, run_first, run_count);
+        append_draw(list, total, resident, instance, cull, run_first, run_count);
 }
 
 void draw_list_fill(struct draw_list *list, const struct resident *resident,
@@ -178,7 +183,8 @@ void draw_list_fill(struct draw_list *list, const struct resident *resident,
                 box_is_outside((const vec4 *)planes, instance->bounds_min, instance->bounds_max))
                 continue;
             struct instance_cull cull;
-            instance_cull_init(&cull, resident, instance, (const vec4 *)planes, eye);
+            instance_cull_init(&cull, resident, instance, (const vec4 *)planes, clip_from_world,
+                               eye);
             append_instance(list, &total, resident, i, &cull);
         }
         list->count[group] = total - list->first[group];

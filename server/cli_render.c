@@ -356,6 +356,8 @@ int cli_render(int argc, char **argv)
     struct scene *scene = scene_load(options.scene, &error);
     if (!scene)
         return cli_fail(CLI_EXIT_SCENE, "%s", error.message);
+    for (uint32_t i = 0; i < scene->warning_count; i++)
+        fprintf(stderr, "voxcast: warning: %s\n", scene->warnings[i]);
     struct frame_params params = {0};
     struct view_options view;
     struct renderer *renderer = NULL;

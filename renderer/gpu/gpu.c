@@ -260,13 +260,6 @@ void gpu_draw_indirect(struct gpu *gpu, const struct gpu_draw_params *params)
                                 (GLsizei)params->count, 0);
 }
 
-void gpu_set_uint(struct gpu *gpu, const struct gpu_program *program, uint32_t location,
-                  uint32_t value)
-{
-    (void)gpu;
-    glProgramUniform1ui(gpu_program_name(program), (GLint)location, value);
-}
-
 struct gpu_geometry {
     GLuint name;
 };
@@ -287,17 +280,17 @@ struct gpu_geometry *gpu_geometry_create(struct gpu *gpu, const struct gpu_buffe
     glVertexArrayAttribFormat(name, 0, 3, GL_FLOAT, GL_FALSE,
                               offsetof(struct raster_vertex, position));
     glVertexArrayAttribFormat(name, 1, 4, GL_FLOAT, GL_FALSE, offsetof(struct raster_vertex, uv));
-    for (GLuint row = 0; row < 3; row++)
+    for (GLuint row = 0; row < 4; row++)
         glVertexArrayAttribFormat(name, 2 + row, 4, GL_FLOAT, GL_FALSE,
                                   row * (GLuint)sizeof(float[4]));
-    glVertexArrayAttribIFormat(name, 5, 4, GL_UNSIGNED_INT,
-                               offsetof(struct gpu_draw_record, numbers));
     glVertexArrayAttribFormat(name, 6, 1, GL_FLOAT, GL_FALSE,
                               offsetof(struct raster_vertex, alpha));
     glVertexArrayAttribIFormat(name, 7, 1, GL_UNSIGNED_INT,
                                offsetof(struct raster_vertex, triangle));
-    for (GLuint attribute = 0; attribute < 8; attribute++) {
-        bool per_draw = attribute >= 2 && attribute <= 5;
+    glVertexArrayAttribIFormat(name, 8, 2, GL_UNSIGNED_INT,
+                               offsetof(struct gpu_draw_record, first_id));
+    for (GLuint attribute = 0; attribute < 9; attribute++) {
+        bool per_draw = (attribute >= 2 && attribute <= 5) || attribute == 8;
         glVertexArrayAttribBinding(name, attribute, per_draw ? 1 : 0);
         glEnableVertexArrayAttrib(name, attribute);
     }

@@ -77,12 +77,14 @@ struct gpu_draw {
     uint32_t base_instance;
 };
 
-// What each draw hands to its vertices as attributes: the rows of world_from_local (attributes 2 to
-// 4) and four numbers of the drawer's choice (attribute 5). Attributes that change once per draw
-// cost a software renderer far less than look-ups in a storage buffer.
+// What each draw hands to its vertices as attributes: the rows of clip_from_local (attributes 2 to
+// 5) and two numbers, first visibility id and material (attribute 8). Attributes that change once
+// per draw cost a software renderer far less than look-ups in a storage buffer.
 struct gpu_draw_record {
-    float world_rows[3][4];
-    uint32_t numbers[4];
+    float clip_rows[4][4];
+    uint32_t first_id;
+    uint32_t material;
+    uint32_t unused[2];
 };
 
 // A vertex as draws read it: attributes 0 (position), 1 (both sets of texture coordinates), 6
@@ -111,10 +113,6 @@ struct gpu_draw_params {
     enum gpu_cull cull;
 };
 void gpu_draw_indirect(struct gpu *gpu, const struct gpu_draw_params *params);
-
-// Sets one uint uniform of a program, by explicit location.
-void gpu_set_uint(struct gpu *gpu, const struct gpu_program *program, uint32_t location,
-                  uint32_t value);
 
 // Fences: signalled when all commands before them are done.
 struct gpu_fence;

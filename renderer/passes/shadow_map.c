@@ -108,8 +108,8 @@ static const char *shadow_map_skip_reason(const struct frame *frame)
 }
 
 static bool draw_layer(struct frame *frame, const struct pass *pass,
-                       const struct gpu_framebuffer *framebuffer, uint32_t view_number,
-                       const mat4 clip_from_world, struct error *out_error)
+                       const struct gpu_framebuffer *framebuffer, const mat4 clip_from_world,
+                       struct error *out_error)
 {
     struct draw_list *draws = &frame->view->shadow_draws;
     draw_list_fill(draws, frame->resident, clip_from_world, NULL);
@@ -134,7 +134,6 @@ static bool draw_layer(struct frame *frame, const struct pass *pass,
             pass_program(frame, pass, "visibility/visibility", kinds[i].defines, out_error);
         if (!program)
             return false;
-        gpu_set_uint(frame->gpu, program, 0, view_number);
         draw_list_draw(draws, frame->resident, program, kinds[i].kind, false);
     }
     gpu_end_raster(frame->gpu);
@@ -148,7 +147,7 @@ static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct 
     for (uint32_t i = 0; i < resident->counts.shadow_layers; i++) {
         if (!resident->shadow_stale[i])
             continue;
-        if (!draw_layer(frame, pass, shadow_map_lamp_framebuffer(resident->shadow_map, i), i,
+        if (!draw_layer(frame, pass, shadow_map_lamp_framebuffer(resident->shadow_map, i),
                         resident->shadow_views[i].clip_from_world, out_error))
             return false;
         resident->shadow_stale[i] = false;
@@ -159,7 +158,7 @@ static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct 
         if (!draw_layer(
                 frame, pass,
                 shadow_map_cascade_framebuffer(resident->shadow_map, view->cascade_numbers[i]),
-                MAX_SHADOW_LAYERS + i, view->cascades[i].clip_from_world, out_error))
+                view->cascades[i].clip_from_world, out_error))
             return false;
         view->cascade_stale[i] = false;
     }

@@ -87,32 +87,29 @@ float edge_integral(vec3 a, vec3 b, vec3 n)
 // irradiance = pi * radiance * form factor. Corners counter-clockwise seen from the lit side.
 float quad_form_factor(vec3 corners[4], vec3 n)
 {
-    float sum = 0.0;
-    vec3 first = vec3(0.0);
-    vec3 last = vec3(0.0);
-    bool started = false;
+    vec3 directions[4];
+    float heights[4];
     for (int i = 0; i < 4; i++) {
-        vec3 a = corners[i];
-        vec3 b = corners[(i + 1) & 3];
-        float height_a = dot(a, n);
-        float height_b = dot(b, n);
-        // The part of edge a-b above the horizon, preceded by the jump along the horizon.
-        if (height_a <= 0.0 && height_b <= 0.0)
-            continue;
-        float t = height_a / (height_a - height_b);
-        vec3 from = normalize(height_a < 0.0 ? mix(a, b, t) : a);
-        vec3 to = normalize(height_b < 0.0 ? mix(a, b, t) : b);
-        if (started)
-            sum += edge_integral(last, from, n);
-        else
-            first = from;
-        started = true;
-        sum += edge_integral(from, to, n);
-        last = to;
+        directions[i] = normalize(corners[i]);
+        heights[i] = dot(corners[i], n);
     }
-    if (started)
-        sum += edge_integral(last, first, n);
-    return sum; // the fit is of angle / (2 pi sine)
+    float sum = 0.0;
+    vec3 entry = n; // where the outline rises above the horizon, and where it sinks below
+    vec3 leave = n;
+    for (int i = 0; i < 4; i++) {
+        int next = (i + 1) & 3;
+        bool above = heights[i] > 0.0;
+        bool next_above = heights[next] > 0.0;
+        bool crosses = above != next_above;
+        float t = crosses ? heights[i] / (heights[i] - heights[next]) : 0.0;
+        vec3 crossing = normalize(mix(corners[i], corners[next], t));
+        vec3 from = above ? directions[i] : crossing;
+        vec3 to = next_above ? directions[next] : crossing;
+        sum += above || next_above ? edge_integral(from, to, n) : 0.0;
+        entry = crosses && next_above ? crossing : entry;
+        leave = crosses && above ? crossing : leave;
+    }
+    return sum + edge_integral(leave, entry, n); // the fit is of angle / (2 pi sine)
 }
 
 #if SPECULAR
