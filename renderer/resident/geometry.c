@@ -6,7 +6,44 @@
 #include "renderer/resident/resident.h"
 #include "renderer/scene/placement.h"
 
-static_assert(sizeof(struct scene_vertex) == VERTEX_WORDS * 4, "shaders read vertices as words");
+static uint32_t pack_snorm(float value)
+{
+    float clamped = fminf(fmaxf(value, -1.0f), 1.0f);
+    return (uint32_t)(int32_t)lrintf(clamped * 32767.0f) & 0xffffu;
+}
+
+// Octahedral, as octahedral_encode() in shaders/lib/frame.glsl; VERTEX_NO_DIRECTION for a vector
+// that has none.
+static uint32_t pack_direction(const float v[3])
+{
+    float sum = fabsf(v[0]) + fabsf(v[1]) + fabsf(v[2]);
+    if (!(sum > 0.0f) || !isfinite(sum))
+        return VERTEX_NO_DIRECTION;
+    float x = v[0] / sum, y = v[1] / sum;
+    if (v[2] < 0.0f) {
+        float folded = (1.0f - fabsf(y)) * (x >= 0.0f ? 1.0f : -1.0f);
+        y = (1.0f - fabsf(x)) * (y >= 0.0f ? 1.0f : -1.0f);
+        x = folded;
+    }
+    return pack_snorm(x) | pack_snorm(y) << 16;
+}
+
+// The document's vertices in the words that shaders read; from malloc, NULL when memory ends.
+static uint32_t *pack_vertices(const struct scene *scene)
+{
+    uint32_t *words = malloc(((size_t)scene->vertex_count * VERTEX_WORDS + 1) * sizeof(*words));
+    for (uint32_t i = 0; words && i < scene->vertex_count; i++) {
+        const struct scene_vertex *vertex = &scene->vertices[i];
+        uint32_t *target = words + (size_t)i * VERTEX_WORDS;
+        memcpy(target, vertex->position, sizeof(vertex->position));
+        target[VERTEX_NORMAL] = pack_direction(vertex->normal);
+        target[VERTEX_TANGENT] = (pack_direction(vertex->tangent) & ~0x10000u) |
+                                 (vertex->tangent[3] < 0.0f ? 0x10000u : 0u);
+        memcpy(target + VERTEX_UV, vertex->uv, sizeof(vertex->uv));
+        memcpy(target + VERTEX_COLOR, vertex->color, sizeof(vertex->color));
+    }
+    return words;
+}
 
 static bool upload(struct resident *resident, struct gpu_buffer **buffer, const char *label,
                    size_t size_bytes, const void *data)
@@ -90,13 +127,15 @@ bool resident_upload_geometry(struct resident *resident)
     for (uint32_t i = 0; i < scene->primitive_count; i++)
         resident->counts.colored_primitives += has_colors(scene, &scene->primitives[i]);
     resident->drawable = scene->index_count > 0 && count > 0;
-    if (!upload(resident, &resident->vertices, "geometry.vertices",
-                scene->vertex_count * sizeof(struct scene_vertex), scene->vertices) ||
-        !upload(resident, &resident->indices, "geometry.indices",
-                scene->index_count * sizeof(uint32_t), scene->indices) ||
-        !upload_id_blocks(resident))
-        return false;
-    return resident_build_clusters(resident) && resident_upload_raster_mesh(resident);
+    uint32_t *words = pack_vertices(scene);
+    bool done = words &&
+                upload(resident, &resident->vertices, "geometry.vertices",
+                       (size_t)scene->vertex_count * VERTEX_WORDS * sizeof(*words), words) &&
+                upload(resident, &resident->indices, "geometry.indices",
+                       scene->index_count * sizeof(uint32_t), scene->indices) &&
+                upload_id_blocks(resident);
+    free(words);
+    return done && resident_build_clusters(resident) && resident_upload_raster_mesh(resident);
 }
 
 // The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales too.

@@ -16,7 +16,7 @@ layout(std430, binding = BIND_ID_BLOCKS) readonly buffer id_block_storage
 
 layout(std430, binding = BIND_VERTICES) readonly buffer vertex_storage
 {
-    float vertices[];
+    uint vertices[]; // VERTEX_WORDS each
 };
 
 layout(std430, binding = BIND_INDICES) readonly buffer index_storage
@@ -32,19 +32,30 @@ struct triangle {
     vec3 volumes[3]; // dotted with a ray: the determinant, and those of the second and third weight
 };
 
+float fetch(uint word)
+{
+    return uintBitsToFloat(vertices[word]);
+}
+
 vec2 fetch2(uint word)
 {
-    return vec2(vertices[word], vertices[word + 1u]);
+    return vec2(fetch(word), fetch(word + 1u));
 }
 
 vec3 fetch3(uint word)
 {
-    return vec3(vertices[word], vertices[word + 1u], vertices[word + 2u]);
+    return vec3(fetch(word), fetch(word + 1u), fetch(word + 2u));
 }
 
 vec4 fetch4(uint word)
 {
-    return vec4(fetch3(word), vertices[word + 3u]);
+    return vec4(fetch3(word), fetch(word + 3u));
+}
+
+vec3 fetch_direction(uint word)
+{
+    uint bits = vertices[word];
+    return bits == VERTEX_NO_DIRECTION ? vec3(0.0) : octahedral_decode(unpackSnorm2x16(bits));
 }
 
 // `id` is a visibility id above 0.
@@ -78,16 +89,10 @@ vec3 plane_weights(triangle t, vec3 direction)
     return vec3(1.0 - b - c, b, c);
 }
 
-vec2 interpolate2(triangle t, uint word, vec3 w)
+vec3 interpolate_direction(triangle t, uint word, vec3 w)
 {
-    return fetch2(t.words.x + word) * w.x + fetch2(t.words.y + word) * w.y +
-           fetch2(t.words.z + word) * w.z;
-}
-
-vec3 interpolate3(triangle t, uint word, vec3 w)
-{
-    return fetch3(t.words.x + word) * w.x + fetch3(t.words.y + word) * w.y +
-           fetch3(t.words.z + word) * w.z;
+    return fetch_direction(t.words.x + word) * w.x + fetch_direction(t.words.y + word) * w.y +
+           fetch_direction(t.words.z + word) * w.z;
 }
 
 vec4 interpolate4(triangle t, uint word, vec3 w)
@@ -108,15 +113,16 @@ struct layer {
 #if TEXTURED
 vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
 {
-    vec4 tangent_local = interpolate4(t, 6u, weights);
-    vec3 tangent = mat3(instances[t.instance].world_from_local) * tangent_local.xyz;
+    vec3 tangent_local = interpolate_direction(t, VERTEX_TANGENT, weights);
+    vec3 tangent = mat3(instances[t.instance].world_from_local) * tangent_local;
+    bool reversed = (vertices[t.words.x + VERTEX_TANGENT] & 0x10000u) != 0u;
     tangent = tangent - normal * dot(normal, tangent);
     float squared = dot(tangent, tangent);
     if (!(squared > 1e-20))
         return normal;
     tangent *= inversesqrt(squared);
     float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
-    vec3 bitangent = cross(normal, tangent) * (tangent_local.w < 0.0 ? -mirrored : mirrored);
+    vec3 bitangent = cross(normal, tangent) * (reversed ? -mirrored : mirrored);
     return safe_normalize(tangent * tangent_space.x + bitangent * tangent_space.y +
                               normal * tangent_space.z,
                           normal);
@@ -137,14 +143,14 @@ surface load_surface(uint id, vec2 pixel, out layer through)
     vec3 face = -t.volumes[0];
     float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     s.geometric_normal = safe_normalize(face * mirrored, s.view);
-    vec3 local_normal = interpolate3(t, 3u, weights);
+    vec3 local_normal = interpolate_direction(t, VERTEX_NORMAL, weights);
     s.normal = safe_normalize(vec3(dot(instances[t.instance].normal_rows[0].xyz, local_normal),
                                    dot(instances[t.instance].normal_rows[1].xyz, local_normal),
                                    dot(instances[t.instance].normal_rows[2].xyz, local_normal)),
                               s.geometric_normal);
     vec4 base = material.base_color;
 #if VERTEX_COLORS
-    base *= interpolate4(t, 14u, weights);
+    base *= interpolate4(t, VERTEX_COLOR, weights);
 #endif
     float metallic = material.surface.x;
     float roughness = material.surface.y;
@@ -160,9 +166,9 @@ surface load_surface(uint id, vec2 pixel, out layer through)
         vec3 weights_dx = plane_weights(t, direction + frame.ray_dx.xyz);
         vec3 weights_dy = plane_weights(t, direction + frame.ray_dy.xyz);
 #if SECOND_UV_SET
-        vec4 uv[3] = {fetch4(t.words.x + 10u), fetch4(t.words.y + 10u), fetch4(t.words.z + 10u)};
+        vec4 uv[3] = {fetch4(t.words.x + VERTEX_UV), fetch4(t.words.y + VERTEX_UV), fetch4(t.words.z + VERTEX_UV)};
 #else
-        vec2 uv[3] = {fetch2(t.words.x + 10u), fetch2(t.words.y + 10u), fetch2(t.words.z + 10u)};
+        vec2 uv[3] = {fetch2(t.words.x + VERTEX_UV), fetch2(t.words.y + VERTEX_UV), fetch2(t.words.z + VERTEX_UV)};
 #endif
         point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
         point.dx = uv[0] * weights_dx.x + uv[1] * weights_dx.y + uv[2] * weights_dx.z - point.uv;
