@@ -266,7 +266,6 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .view = view,
         .params = params,
         .quality = &quality_levels[params->quality],
-        .first_draw = !view->drawn,
         .visibility_changed = !same_scene || !same_surfaces(view, params, &revisions),
     };
     effects_plan(&frame.plan, resident, params);
@@ -277,6 +276,9 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     struct ring_frame *slot = &view->ring[view->ring_next];
     slot->fence = gpu_fence_create(renderer->gpu);
     slot->started_ms = started_ms;
+    bool fixed = params->settings.exposure_mode == EXPOSURE_FIXED;
+    slot->exposure_bias = exp2f(params->settings.exposure_ev);
+    slot->fixed_exposure = fixed ? slot->exposure_bias : 0.0f;
     slot->result = (struct frame_pixels){
         .user_id = params->user_id,
         .width = params->width,
@@ -312,8 +314,12 @@ bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wa
     struct frame_params shape = {
         .width = slot->result.width, .height = slot->result.height, .output = slot->result.output};
     size_t offsets[3];
-    view_output_layout(&shape, offsets, slot->result.row_pitch_bytes);
+    size_t size_bytes = view_output_layout(&shape, offsets, slot->result.row_pitch_bytes);
     const uint8_t *bytes = gpu_buffer_mapping(slot->pixels);
+    float found;
+    memcpy(&found, bytes + size_bytes, sizeof(found));
+    view->last_exposure =
+        slot->fixed_exposure > 0.0f ? slot->fixed_exposure : found * slot->exposure_bias;
     for (int i = 0; i < (shape.output == FRAME_OUTPUT_YCBCR ? 3 : 1); i++)
         slot->result.planes[i] = bytes + offsets[i];
     slot->result.frame_time_ms = now_ms() - slot->started_ms;
@@ -346,6 +352,7 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
     *statistics = (struct frame_statistics){.pass_count = PASS_COUNT,
                                             .effect_count = EFFECT_COUNT,
                                             .frame_time_ms = view->last_frame_ms,
+                                            .exposure = view->last_exposure,
                                             .render_width = view->width,
                                             .render_height = view->height};
     gpu_timer_poll(view->timer);

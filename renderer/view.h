@@ -9,11 +9,16 @@
 #include "renderer/gpu/timer.h"
 #include "renderer/resident/resident.h"
 
+// Behind the pixels in a ring buffer: the exposure that was found automatically.
+#define VIEW_EXPOSURE_BYTES 16u
+
 struct ring_frame {
     struct gpu_buffer *pixels;
     struct gpu_fence *fence;
     struct frame_pixels result; // planes filled in at collection
     double started_ms;
+    float fixed_exposure; // scale in use; 0 if it was found automatically
+    float exposure_bias;
     bool pending;
 };
 
@@ -22,8 +27,6 @@ struct view {
     struct gpu_timer *timer;
     uint32_t width; // rendered; 0 before the first frame
     uint32_t height;
-    uint32_t shown_width;
-    uint32_t shown_height;
 
     struct gpu_buffer *frame_block;
     struct gpu_texture *ids;

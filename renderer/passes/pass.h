@@ -44,7 +44,6 @@ struct frame {
     uint32_t height;
     uint32_t tiles_x;
     uint32_t tiles_y;
-    bool first_draw;         // nothing of this view is on the GPU yet
     bool visibility_changed; // camera, size, geometry, placement or materials
 };
 

@@ -1,4 +1,4 @@
-// Copies the output into the ring of buffers that the host can read.
+// Copies the output, and the exposure behind it, into the ring of buffers that the host can read.
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
 
@@ -11,12 +11,14 @@ static bool readback_run(struct frame *frame, const struct pass *pass, struct er
     uint32_t pitches[3];
     size_t bytes = view_output_layout(frame->params, offsets, pitches);
     gpu_buffer_copy(view->ring[view->ring_next].pixels, 0, view->output, 0, bytes);
+    gpu_buffer_copy(view->ring[view->ring_next].pixels, bytes, view->exposure, 0,
+                    VIEW_EXPOSURE_BYTES);
     return true;
 }
 
 const struct pass readback_pass = {
     .name = "readback",
-    .use_count = 1,
-    .uses = {{RESOURCE_OUTPUT, ACCESS_READ}},
+    .use_count = 2,
+    .uses = {{RESOURCE_OUTPUT, ACCESS_READ}, {RESOURCE_EXPOSURE, ACCESS_READ}},
     .run = readback_run,
 };

@@ -183,8 +183,6 @@ static void place_instance(struct resident *resident, struct resident_instance *
     block->info[0] = instance->index_first;
     block->info[1] = primitive->material;
     block->info[2] = instance->first_id;
-    block->source[0] = instance->node;
-    block->source[1] = instance->primitive;
     instance->visible = node->world_visible && instance->index_count > 0;
     instance->group =
         group_of(&scene->materials[primitive->material], (block->info[3] & INSTANCE_MIRRORED) != 0);
@@ -219,12 +217,13 @@ static uint64_t hash_casters(const struct resident *resident)
         const struct scene_material *material =
             &scene->materials[scene->primitives[instance->primitive].material];
         bool masked = material->alpha_mode == SCENE_ALPHA_MASK;
-        float values[4] = {(float)instance->group, instance->visible,
-                           masked ? material->alpha_cutoff : 0.0f,
-                           masked ? material->base_color[3] : 0.0f};
-        const unsigned char *bytes = (const unsigned char *)values;
-        for (size_t j = 0; j < sizeof(values); j++)
-            hash = (hash ^ bytes[j]) * 1099511628211ull;
+        float cutoff = masked ? material->alpha_cutoff : 0.0f;
+        float alpha = masked ? material->base_color[3] : 0.0f;
+        uint32_t words[4] = {instance->group, instance->visible, 0, 0};
+        memcpy(&words[2], &cutoff, sizeof(cutoff));
+        memcpy(&words[3], &alpha, sizeof(alpha));
+        for (int j = 0; j < 4; j++)
+            hash = (hash ^ words[j]) * 1099511628211ull;
     }
     return hash;
 }

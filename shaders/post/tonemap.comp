@@ -6,11 +6,7 @@
 #include "lib/display.glsl"
 #include "lib/radiance.glsl"
 
-#if OUTPUT == 0
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
-#else
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
-#endif
 
 layout(std430, binding = BIND_OUTPUT) writeonly buffer output_storage
 {

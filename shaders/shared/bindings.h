@@ -79,10 +79,7 @@
 #define SHADE_BACKGROUND  3u
 
 #define MATERIAL_SHADING_MASK 3u
-#define MATERIAL_DOUBLE_SIDED 4u
-#define MATERIAL_ALPHA_MASK   8u
 #define MATERIAL_ALPHA_BLEND  16u
-#define MATERIAL_TEXTURED     32u
 #define MATERIAL_IOR_ONE      64u // no dielectric reflection at any angle
 
 #define TEXTURE_SLOTS              8

@@ -268,6 +268,42 @@ static void test_outputs_agree(void **state)
     scene_destroy(&scene);
 }
 
+// A wall that emits L everywhere: automatic exposure brings L to the same middle value for any L.
+static void test_exposure_is_found_and_told(void **state)
+{
+    (void)state;
+    struct renderer *renderer = test_renderer();
+    struct error error = {""};
+    float products[2];
+    for (int i = 0; i < 2; i++) {
+        struct scene *scene = test_square_scene(5.0f, 0.0f);
+        struct scene_material material = scene->materials[0];
+        float radiance = i ? 400.0f : 0.02f;
+        material.emissive[0] = material.emissive[1] = material.emissive[2] = 1.0f;
+        material.emissive_strength = radiance;
+        scene_set_material(scene, 0, &material);
+        assert_true(renderer_set_scene(renderer, scene, &error));
+        struct view *view = renderer_view_create(renderer);
+        struct frame_params params = test_params(64, 64, FRAME_OUTPUT_YCBCR);
+        params.settings.exposure_mode = EXPOSURE_AUTOMATIC;
+        test_look_down_z(&params, 3.0f);
+        draw_and_drop(renderer, view, &params);
+        struct frame_statistics statistics;
+        renderer_view_get_statistics(renderer, view, &statistics);
+        products[i] = statistics.exposure * radiance;
+        params.settings.exposure_mode = EXPOSURE_FIXED;
+        params.settings.exposure_ev = 3.0f;
+        draw_and_drop(renderer, view, &params);
+        renderer_view_get_statistics(renderer, view, &statistics);
+        assert_true(statistics.exposure == 8.0f);
+        renderer_view_destroy(renderer, &view);
+        renderer_set_scene(renderer, NULL, &error);
+        scene_destroy(&scene);
+    }
+    assert_true(products[0] > 0.1f && products[0] < 1.0f);
+    assert_true(fabsf(products[0] / products[1] - 1.0f) < 0.2f); // a bin of the histogram
+}
+
 static void test_bad_parameters_are_refused(void **state)
 {
     (void)state;
@@ -367,6 +403,7 @@ int main(void)
         cmocka_unit_test(test_left_out_effects_change_no_pixel),
         cmocka_unit_test(test_layers_blend_in_order_of_depth),
         cmocka_unit_test(test_outputs_agree),
+        cmocka_unit_test(test_exposure_is_found_and_told),
         cmocka_unit_test(test_bad_parameters_are_refused),
         cmocka_unit_test(test_picking_names_what_is_seen),
         // Last: it makes a second context current.
