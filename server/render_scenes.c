@@ -186,8 +186,26 @@ static void report_failed_load(struct render_thread *thread, const struct error 
     }
 }
 
+// A picture that a reload can no longer read is taken for broken or half-written: the last good
+// scene stays until it is whole again.
+static bool lost_a_picture(const struct render_thread *thread, const struct scene *scene,
+                           struct error *error)
+{
+    bool reload = thread->scene && thread->load_client_id == 0;
+    if (!reload || scene->missing_image_count <= thread->scene->missing_image_count)
+        return false;
+    const char *text = "a picture can no longer be read";
+    for (uint32_t i = 0; i < scene->warning_count; i++)
+        if (strstr(scene->warnings[i], "left out"))
+            text = scene->warnings[i];
+    error_set(error, "%.300s", text);
+    return true;
+}
+
 static void finish_load(struct render_thread *thread, struct scene *scene, struct error *error)
 {
+    if (scene && lost_a_picture(thread, scene, error))
+        scene_destroy(&scene);
     if (!scene || !swap_scene(thread, scene, error)) {
         report_failed_load(thread, error);
         return;

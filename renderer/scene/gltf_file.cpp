@@ -292,6 +292,7 @@ static void keep_images(gltf_import &import, std::vector<image_request> &request
             import.image_ids[i] = scene_add_image(import.scene, request.image);
             image_release(&request.image);
         } else if (request.error.message[0]) {
+            import.scene->missing_image_count++;
             scene_add_warning(import.scene, "images[%zu] is left out: %s", i,
                               request.error.message);
         }

@@ -89,6 +89,7 @@ static void load_pictures(obj_import &import, const std::vector<tinyobj::materia
             path = asset_path_resolve(import.folder.c_str(), entry.first.c_str(), &error);
         }
         if (!path) {
+            import.scene->missing_image_count++;
             obj_warn_once(import, "a picture is left out: %s", error.message);
             continue;
         }
@@ -103,6 +104,7 @@ static void load_pictures(obj_import &import, const std::vector<tinyobj::materia
         pictures.by_name[names[i]] = requests[i].image;
         scene_add_source_file(import.scene, requests[i].key.path);
         if (!requests[i].image) {
+            import.scene->missing_image_count++;
             obj_warn_once(import, "a picture is left out: '%s': %s",
                           import_short_name(names[i], 100).c_str(), requests[i].error.message);
         }

@@ -214,6 +214,7 @@ struct scene {
     uint32_t source_file_count;
     char *warnings[SCENE_MAX_WARNINGS]; // what the loader ignored or mended; owned
     uint32_t warning_count;
+    uint32_t missing_image_count; // pictures that could not be read, and were left out
 
     struct scene_vertex *vertices;
     uint32_t vertex_count, vertex_capacity;

@@ -293,6 +293,33 @@ test('wants the token', async () => {
   assert.equal((await editor.closed).code, 1001);
 });
 
+test('keeps the last good texture while its file is broken', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'voxcast-'));
+  const path = join(folder, 'textured.obj');
+  // A TGA picture of one pixel: no other format is as easily written by hand.
+  const header = [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0];
+  const picture = (blue) => Buffer.from([...header, blue, 20, 30]);
+  writeFileSync(join(folder, 'colour.tga'), picture(10));
+  writeFileSync(join(folder, 'm.mtl'), 'newmtl m\nmap_Kd colour.tga\n');
+  writeFileSync(path, 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n');
+  const daemon = await startDaemon([path]);
+  const client = await hello(daemon);
+  const textures = async () => {
+    const { materials } = (await client.call('scene.get')).result;
+    return Object.keys(materials.find((m) => m.name === 'm').textures).length;
+  };
+  assert.equal(await textures(), 1);
+  writeFileSync(join(folder, 'colour.tga'), 'no picture');
+  const notice = await client.until(
+    () => client.notifications.find((n) => n.method === 'session.notice'), 'a notice');
+  assert.match(notice.params.message, /colour\.tga/);
+  assert.equal(await textures(), 1);
+  writeFileSync(join(folder, 'colour.tga'), picture(200));
+  await client.until(() => client.notifications.find((n) => n.method === 'scene.loaded'), 'scene.loaded');
+  assert.equal(await textures(), 1);
+  assert.equal(await stopDaemon(daemon), 0);
+});
+
 test('reloads a changed scene file and keeps the last good one', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'voxcast-'));
   const path = join(folder, 'one.obj');
