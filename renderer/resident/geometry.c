@@ -138,26 +138,12 @@ bool resident_upload_geometry(struct resident *resident)
     return done && resident_build_clusters(resident) && resident_upload_raster_mesh(resident);
 }
 
-// The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales too.
 static void fill_instance_block(struct instance_block *block, const float matrix[16])
 {
     memcpy(block->world_from_local, matrix, sizeof(block->world_from_local));
-    mat3 linear, cofactors;
+    mat3 linear;
     glm_mat4_pick3(block->world_from_local, linear);
-    glm_vec3_cross(linear[1], linear[2], cofactors[0]);
-    glm_vec3_cross(linear[2], linear[0], cofactors[1]);
-    glm_vec3_cross(linear[0], linear[1], cofactors[2]);
-    float determinant = glm_vec3_dot(linear[0], cofactors[0]);
-    float sign = determinant < 0.0f ? -1.0f : 1.0f;
-    // Scaled towards 1, so that products stay within the range of floats.
-    float largest = 0.0f;
-    for (int i = 0; i < 9; i++)
-        largest = fmaxf(largest, fabsf(((float *)cofactors)[i]));
-    float scale = largest > 0.0f && isfinite(largest) ? sign / largest : sign;
-    for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 3; column++)
-            block->normal_rows[row][column] = cofactors[column][row] * scale;
-    block->info[3] = determinant < 0.0f ? INSTANCE_MIRRORED : 0;
+    block->info[3] = glm_mat3_det(linear) < 0.0f ? INSTANCE_MIRRORED : 0;
 }
 
 static uint8_t group_of(const struct scene_material *material, bool mirrored)

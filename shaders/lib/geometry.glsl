@@ -27,6 +27,7 @@ layout(std430, binding = BIND_INDICES) readonly buffer index_storage
 struct triangle {
     uint instance;
     uvec3 words;   // where each vertex starts in `vertices`
+    mat3 linear;   // of world_from_local
     vec3 corner;   // first corner minus the eye
     vec3 edges[2]; // from the first corner
     vec3 volumes[3]; // dotted with a ray: the determinant, and those of the second and third weight
@@ -66,12 +67,12 @@ triangle fetch_triangle(uint id)
     uint first = instances[t.instance].info.x + 3u * (id - 1u - instances[t.instance].info.z);
     t.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
     mat4 world_from_local = instances[t.instance].world_from_local;
-    mat3 linear = mat3(world_from_local);
+    t.linear = mat3(world_from_local);
     vec3 origin = world_from_local[3].xyz - frame.eye.xyz;
     vec3 local = fetch3(t.words.x);
-    t.corner = linear * local + origin;
-    t.edges[0] = linear * (fetch3(t.words.y) - local);
-    t.edges[1] = linear * (fetch3(t.words.z) - local);
+    t.corner = t.linear * local + origin;
+    t.edges[0] = t.linear * (fetch3(t.words.y) - local);
+    t.edges[1] = t.linear * (fetch3(t.words.z) - local);
     t.volumes[0] = cross(t.edges[1], t.edges[0]);
     t.volumes[1] = cross(t.corner, t.edges[1]);
     t.volumes[2] = cross(t.edges[0], t.corner);
@@ -114,7 +115,7 @@ struct layer {
 vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
 {
     vec3 tangent_local = interpolate_direction(t, VERTEX_TANGENT, weights);
-    vec3 tangent = mat3(instances[t.instance].world_from_local) * tangent_local;
+    vec3 tangent = t.linear * tangent_local;
     bool reversed = (vertices[t.words.x + VERTEX_TANGENT] & 0x10000u) != 0u;
     tangent = tangent - normal * dot(normal, tangent);
     float squared = dot(tangent, tangent);
@@ -144,10 +145,11 @@ surface load_surface(uint id, vec2 pixel, out layer through)
     float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     s.geometric_normal = safe_normalize(face * mirrored, s.view);
     vec3 local_normal = interpolate_direction(t, VERTEX_NORMAL, weights);
-    s.normal = safe_normalize(vec3(dot(instances[t.instance].normal_rows[0].xyz, local_normal),
-                                   dot(instances[t.instance].normal_rows[1].xyz, local_normal),
-                                   dot(instances[t.instance].normal_rows[2].xyz, local_normal)),
-                              s.geometric_normal);
+    // The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales too.
+    vec3 turned = cross(t.linear[1], t.linear[2]) * local_normal.x +
+                  cross(t.linear[2], t.linear[0]) * local_normal.y +
+                  cross(t.linear[0], t.linear[1]) * local_normal.z;
+    s.normal = safe_normalize(turned * mirrored, s.geometric_normal);
     vec4 base = material.base_color;
 #if VERTEX_COLORS
     base *= interpolate4(t, VERTEX_COLOR, weights);

@@ -30,8 +30,7 @@ struct frame_block {
 // A placed primitive: one draw.
 struct instance_block {
     mat4 world_from_local;
-    vec4 normal_rows[3]; // cofactor matrix times the sign of the determinant
-    uvec4 info;          // first index, material, first visibility id, flags
+    uvec4 info; // first index, material, first visibility id, flags
 };
 
 struct material_block {
@@ -78,7 +77,7 @@ struct shadow_view_block {
 #define BLOCK_VECTORS(block, count)                                                                \
     static_assert(sizeof(struct block) == (count) * sizeof(vec4), #block " has no padding")
 BLOCK_VECTORS(frame_block, 16 + 2 * MAX_CASCADES);
-BLOCK_VECTORS(instance_block, 8);
+BLOCK_VECTORS(instance_block, 5);
 BLOCK_VECTORS(material_block, 7);
 BLOCK_VECTORS(texture_block, 3);
 BLOCK_VECTORS(light_block, 5);
