@@ -219,7 +219,7 @@ static bool add_all_but_light(struct scene *scene)
            add_cameras(scene);
 }
 
-// `brightness` 1 is a clear day in units of 10 000 lux.
+// `brightness` 1 is a clear day in units of 1 000 lux.
 static bool add_sky(struct scene *scene, float brightness, const float sun_color[3])
 {
     struct scene_light sun;
