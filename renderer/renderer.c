@@ -130,14 +130,8 @@ static bool params_equal(const struct frame_params *a, const struct frame_params
 {
     return memcmp(&a->camera, &b->camera, sizeof(a->camera)) == 0 && a->width == b->width &&
            a->height == b->height && a->quality == b->quality && a->debug_view == b->debug_view &&
-           a->output == b->output && a->settings.gi_method == b->settings.gi_method &&
-           a->settings.tonemap == b->settings.tonemap &&
-           a->settings.exposure_mode == b->settings.exposure_mode &&
-           a->settings.exposure_ev == b->settings.exposure_ev &&
-           a->settings.gamma == b->settings.gamma &&
-           a->settings.shading_model == b->settings.shading_model &&
-           a->settings.shadows == b->settings.shadows &&
-           a->settings.force_all_effects == b->settings.force_all_effects;
+           a->debug_level == b->debug_level && a->debug_face == b->debug_face &&
+           a->output == b->output && render_settings_equal(&a->settings, &b->settings);
 }
 
 static bool same_surfaces(const struct view *view, const struct frame_params *params,
@@ -284,6 +278,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .width = params->width,
         .height = params->height,
         .output = params->output,
+        .convergence = 1.0f,
     };
     view->ring_next = (view->ring_next + 1) % RENDERER_FRAMES_IN_RING;
     view->ring_count++;

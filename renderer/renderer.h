@@ -69,6 +69,8 @@ struct frame_params {
     uint32_t height;
     enum quality quality;
     enum debug_view debug_view;
+    uint32_t debug_level;       // of the voxels that a debug view shows
+    enum voxel_face debug_face; // likewise
     enum frame_output output;
     struct render_settings settings;
     uint64_t user_id; // handed back with the pixels
@@ -76,12 +78,13 @@ struct frame_params {
 
 enum render_result {
     RENDER_DRAWN,     // pixels will come by renderer_view_collect()
-    RENDER_UNCHANGED, // nothing has changed since the last drawn frame: nothing ran
+    RENDER_UNCHANGED, // nothing has changed and the picture has converged: nothing ran
     RENDER_BUSY,      // all RENDERER_FRAMES_IN_RING frames wait to be collected
     RENDER_FAILED,
 };
 
-// Draws one frame and starts its readback; does not wait for the GPU.
+// Draws one frame and starts its readback; does not wait for the GPU. Indirect light converges over
+// several frames: draw again with the same parameters until RENDER_UNCHANGED is returned.
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error);
 
@@ -97,6 +100,7 @@ struct frame_pixels {
     enum frame_output output;
     const uint8_t *planes[3];
     uint32_t row_pitch_bytes[3];
+    float convergence;    // 0 to 1: how far indirect light and averaging have come; 1 is final
     double frame_time_ms; // wall time from the call of renderer_view_draw to the pixels being here
 };
 
