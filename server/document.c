@@ -122,6 +122,21 @@ static const struct binding bindings[] = {
     ENVIRONMENT(ground_color),
     ENVIRONMENT(rotation_rad),
     SETTINGS(gi_method),
+    SETTINGS(voxel_resolution),
+    SETTINGS(voxel_directions),
+    SETTINGS(clip_levels),
+    SETTINGS(cone_set),
+    SETTINGS(cone_step),
+    SETTINGS(gather_mode),
+    SETTINGS(bounces),
+    SETTINGS(indirect_intensity),
+    SETTINGS(ambient_occlusion),
+    SETTINGS(soft_shadows),
+    SETTINGS(indirect_specular),
+    SETTINGS(refraction),
+    SETTINGS(environment_light),
+    SETTINGS(voxelize_every_frame),
+    SETTINGS(levels_per_frame),
     SETTINGS(tonemap),
     SETTINGS(exposure_mode),
     SETTINGS(exposure_ev),
@@ -137,6 +152,8 @@ static const struct binding bindings[] = {
     VIEW(height),
     VIEW(quality),
     VIEW(debug_view),
+    VIEW(debug_level),
+    VIEW(debug_face),
     VIEW(paused),
     CAMERA(eye),
     CAMERA(target),
@@ -380,6 +397,11 @@ static bool check_record(enum parameter_group group, const union record *record,
         !record->environment.pixels)
         return rpc_error_field(error, "type", NULL,
                                "type: equirect needs an environment picture in the scene");
+    if (group == GROUP_SETTINGS && record->settings.cone_step > 0.0f &&
+        record->settings.cone_step < CONE_STEP_MIN)
+        return rpc_error_field(
+            error, "cone_step", NULL, "cone_step: %g is too short; allowed are 0 and %g to %g",
+            (double)record->settings.cone_step, (double)CONE_STEP_MIN, (double)CONE_STEP_MAX);
     if (group == GROUP_CAMERA) {
         const struct view_camera *camera = &record->camera;
         float distance = 0.0f;

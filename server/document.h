@@ -17,6 +17,8 @@ struct view_options {
     uint32_t height;
     enum quality quality;
     enum debug_view debug_view;
+    uint32_t debug_level;
+    enum voxel_face debug_face;
     bool paused;
     struct view_camera camera;
 };

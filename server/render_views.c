@@ -112,6 +112,8 @@ static bool draw(struct render_thread *thread, uint32_t slot)
         .height = client->options.height,
         .quality = client->options.quality,
         .debug_view = client->options.debug_view,
+        .debug_level = client->options.debug_level,
+        .debug_face = client->options.debug_face,
         .output = FRAME_OUTPUT_YCBCR,
         .settings = thread->settings,
         .user_id = client->frame_count + 1,
