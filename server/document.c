@@ -151,6 +151,8 @@ static const struct binding bindings[] = {
     VIEW(width),
     VIEW(height),
     VIEW(quality),
+    VIEW(adaptive),
+    VIEW(target_frame_ms),
     VIEW(debug_view),
     VIEW(debug_level),
     VIEW(debug_face),
@@ -318,7 +320,9 @@ void view_options_init(struct view_options *view)
     *view = (struct view_options){
         .width = 640,
         .height = 360,
-        .quality = QUALITY_INTERACTIVE,
+        .quality = QUALITY_FINAL,
+        .adaptive = true,
+        .target_frame_ms = 100,
         .debug_view = DEBUG_VIEW_FINAL,
         .camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .fov_y_rad = 0.785398f},
     };
