@@ -77,9 +77,11 @@ static void take_draft(struct quality_controller *controller, double target_ms, 
 
 void quality_controller_take_frame(struct quality_controller *controller,
                                    const struct quality_request *request, enum quality row,
-                                   double frame_ms)
+                                   bool moving, double frame_ms)
 {
-    if (!request->adaptive)
+    bool changed = row != controller->last_row;
+    controller->last_row = row;
+    if (!request->adaptive || !moving || changed)
         return;
     if (row == QUALITY_INTERACTIVE && !controller->draft)
         take_interactive(controller, request->target_frame_ms, frame_ms);

@@ -21,6 +21,7 @@ struct quality_request {
 // One view's state; all 0 is a view that has never changed.
 struct quality_controller {
     uint64_t moved_at_us;
+    enum quality last_row;    // of the newest frame
     bool draft;               // moving pictures are drawn with the draft row
     uint32_t over_count;      // interactive frames in a row that took too long
     uint32_t under_count;     // draft frames in a row after which interactive ones would fit
@@ -43,13 +44,14 @@ enum quality quality_controller_choose(const struct quality_controller *controll
 uint64_t quality_controller_next_us(const struct quality_controller *controller,
                                     const struct quality_request *request, uint64_t now_us);
 
-// Takes in how long a frame of a moving picture took. Three interactive ones in a row above the
-// target change to draft. Back goes the way when eight draft ones in a row tell, by the ratio that
-// the change showed, that interactive ones would take less than four fifths of the target: between
-// the two bounds nothing changes, so that the row does not flap.
+// Takes in a frame: its row, and how long it took. Frames of a moving picture count that follow one
+// of the same row: the first of a row resizes what it draws into. Three interactive ones in a row
+// above the target change to draft. Back goes the way when eight draft ones in a row tell, by the
+// ratio that the change showed, that interactive ones would take less than four fifths of the
+// target: between the two bounds nothing changes, so that the row does not flap.
 void quality_controller_take_frame(struct quality_controller *controller,
                                    const struct quality_request *request, enum quality row,
-                                   double frame_ms);
+                                   bool moving, double frame_ms);
 
 // The share of the way to the wanted picture, from that of a frame of `row`: what is drawn with a
 // lower row than the wanted one is never done.

@@ -271,9 +271,8 @@ static void take_convergence(struct render_client *client, const struct frame_pi
     if (client->convergence >= 1.0f)
         client->header.flags |= FRAME_CONVERGED;
     struct quality_request request = request_of(client);
-    if (client->drawn_moving)
-        quality_controller_take_frame(&client->quality, &request, client->drawn_row,
-                                      pixels->frame_time_ms);
+    quality_controller_take_frame(&client->quality, &request, client->drawn_row,
+                                  client->drawn_moving, pixels->frame_time_ms);
 }
 
 static void take_refine_time(struct render_thread *thread, const struct render_client *client,

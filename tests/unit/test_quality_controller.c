@@ -17,7 +17,7 @@ static const struct quality_request final_request = {QUALITY_FINAL, true, 100};
 static void take(struct quality_controller *controller, enum quality row, double ms, int count)
 {
     for (int i = 0; i < count; i++)
-        quality_controller_take_frame(controller, &final_request, row, ms);
+        quality_controller_take_frame(controller, &final_request, row, true, ms);
 }
 
 static enum quality moving_row(const struct quality_controller *controller,
@@ -57,7 +57,7 @@ static void a_wanted_row_is_never_exceeded(void **state)
     assert_true(quality_controller_next_us(&controller, &draft, START_US) == QUALITY_NEVER);
     const struct quality_request interactive = {QUALITY_INTERACTIVE, true, 100};
     assert_int_equal(moving_row(&controller, &interactive), QUALITY_INTERACTIVE);
-    take(&controller, QUALITY_INTERACTIVE, 500.0, 3);
+    take(&controller, QUALITY_INTERACTIVE, 500.0, 4);
     assert_int_equal(moving_row(&controller, &interactive), QUALITY_DRAFT);
     assert_int_equal(
         quality_controller_choose(&controller, &interactive, START_US + QUALITY_STILL_US),
@@ -72,7 +72,7 @@ static void without_adaption_the_row_is_fixed(void **state)
     quality_controller_move(&controller, START_US);
     assert_int_equal(moving_row(&controller, &fixed), QUALITY_FINAL);
     for (int i = 0; i < 20; i++)
-        quality_controller_take_frame(&controller, &fixed, QUALITY_INTERACTIVE, 900.0);
+        quality_controller_take_frame(&controller, &fixed, QUALITY_INTERACTIVE, true, 900.0);
     assert_int_equal(moving_row(&controller, &final_request), QUALITY_INTERACTIVE);
 }
 
@@ -81,19 +81,35 @@ static void slow_frames_lead_to_draft_and_fast_ones_back(void **state)
     (void)state;
     struct quality_controller controller = {0};
     quality_controller_move(&controller, START_US);
-    take(&controller, QUALITY_INTERACTIVE, 900.0, 1); // as when shaders compile
+    take(&controller, QUALITY_INTERACTIVE, 900.0, 2); // as when shaders compile
     take(&controller, QUALITY_INTERACTIVE, 60.0, 1);
     take(&controller, QUALITY_INTERACTIVE, 150.0, 2);
     assert_int_equal(moving_row(&controller, &final_request), QUALITY_INTERACTIVE);
     take(&controller, QUALITY_INTERACTIVE, 150.0, 1);
     assert_int_equal(moving_row(&controller, &final_request), QUALITY_DRAFT);
     // 150 ms became 50 ms: three to one. Interactive frames would still take 90 ms.
+    take(&controller, QUALITY_DRAFT, 200.0, 1);
     take(&controller, QUALITY_DRAFT, 50.0, 3);
     take(&controller, QUALITY_DRAFT, 30.0, 100);
     assert_int_equal(moving_row(&controller, &final_request), QUALITY_DRAFT);
     take(&controller, QUALITY_DRAFT, 25.0, 7);
     assert_int_equal(moving_row(&controller, &final_request), QUALITY_DRAFT);
     take(&controller, QUALITY_DRAFT, 25.0, 1);
+    assert_int_equal(moving_row(&controller, &final_request), QUALITY_INTERACTIVE);
+}
+
+static void single_steps_and_still_frames_do_not_count(void **state)
+{
+    (void)state;
+    struct quality_controller controller = {0};
+    quality_controller_move(&controller, START_US);
+    for (int i = 0; i < 20; i++) {
+        take(&controller, QUALITY_INTERACTIVE, 500.0, 1);
+        take(&controller, QUALITY_FINAL, 900.0, 1);
+    }
+    for (int i = 0; i < 20; i++)
+        quality_controller_take_frame(&controller, &final_request, QUALITY_INTERACTIVE, false,
+                                      500.0);
     assert_int_equal(moving_row(&controller, &final_request), QUALITY_INTERACTIVE);
 }
 
@@ -133,6 +149,7 @@ int main(void)
         cmocka_unit_test(a_wanted_row_is_never_exceeded),
         cmocka_unit_test(without_adaption_the_row_is_fixed),
         cmocka_unit_test(slow_frames_lead_to_draft_and_fast_ones_back),
+        cmocka_unit_test(single_steps_and_still_frames_do_not_count),
         cmocka_unit_test(steady_scenes_do_not_flap),
         cmocka_unit_test(lower_rows_are_not_done),
     };
