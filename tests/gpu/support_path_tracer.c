@@ -17,7 +17,7 @@
 // Surfaces that one ray may pass through.
 #define MAX_LAYERS 64
 // Paths end by chance from here on (Russian roulette), by how much light they still carry.
-#define ROULETTE_FROM_REFLECTION 3u
+#define ROULETTE_FROM_REFLECTION 4u
 #define ROULETTE_MAX_SURVIVAL    0.95
 
 struct tracer {
@@ -106,23 +106,27 @@ static bool find_surface(struct path *path, struct path_surface *out_surface)
     return false;
 }
 
-// Whether something opaque stands between a surface and a light `distance` away.
+// Whether something opaque stands between a surface and a point; or, for NULL, anywhere in the
+// direction.
 static bool is_shadowed(const struct tracer *tracer, const struct path_surface *surface,
-                        const double direction[3], double distance)
+                        const double *target, const double direction[3])
 {
     struct path_surface blocker;
-    double origin[3], target[3];
+    double origin[3], along[3], left = INFINITY;
+    memcpy(along, direction, sizeof(along));
     step_off(tracer, surface, 1.0, origin);
-    for (int axis = 0; axis < 3; axis++)
-        target[axis] = surface->position[axis] + direction[axis] * distance;
     for (int i = 0; i < MAX_LAYERS; i++) {
-        double left = distance;
-        if (isfinite(distance)) {
-            double rest[3];
-            vector3_subtract(rest, target, origin);
-            left = vector3_dot(rest, direction) - 2.0 * tracer->offset_m;
+        if (target) {
+            // Aimed anew from the shifted origin, so that the ray meets nothing but at its end.
+            vector3_subtract(along, target, origin);
+            left = vector3_length(along);
+            if (!(left > 0.0) || vector3_dot(along, direction) <= 0.0)
+                return false;
+            for (int axis = 0; axis < 3; axis++)
+                along[axis] /= left;
+            left *= 1.0 - 1e-6;
         }
-        if (left <= 0.0 || !cast(tracer, origin, direction, left, &blocker))
+        if (!cast(tracer, origin, along, left, &blocker))
             return false;
         if (blocker.passed == 0.0)
             return true;
@@ -155,9 +159,12 @@ static void sample_punctual(struct path *path, const struct path_surface *surfac
     if (!path_lights_choose_punctual(tracer->lights, surface->position, surface->normal,
                                      next_random(path), &sample))
         return;
-    double reflected = brdf_cosine(surface, sample.direction);
+    double reflected = brdf_cosine(surface, sample.direction), position[3];
+    for (int axis = 0; axis < 3; axis++)
+        position[axis] = surface->position[axis] + sample.direction[axis] * sample.distance;
+    const double *target = isfinite(sample.distance) ? position : NULL;
     if (reflected > 0.0 &&
-        !(sample.casts_shadow && is_shadowed(tracer, surface, sample.direction, sample.distance)))
+        !(sample.casts_shadow && is_shadowed(tracer, surface, target, sample.direction)))
         reflect_light(path, surface, sample.light, reflected);
 }
 
@@ -197,10 +204,10 @@ static void sample_emitter(struct path *path, const struct path_surface *surface
         direction[axis] /= distance;
     if (!path_surface_init(&emitter, tracer->params->scene, &point, direction) || emitter.is_back)
         return;
-    double reflected = brdf_cosine(surface, direction);
+    double reflected = brdf_cosine(surface, direction), target[3];
     double density = emitter_density(tracer, &emitter, surface->position);
-    if (reflected > 0.0 && isfinite(density) &&
-        !is_shadowed(tracer, surface, direction, distance)) {
+    step_off(tracer, &emitter, 1.0, target);
+    if (reflected > 0.0 && isfinite(density) && !is_shadowed(tracer, surface, target, direction)) {
         // The balance heuristic: this density against that of the cosine-distributed ray, which is
         // brdf_cosine itself.
         double share = (1.0 - emitter.passed) / (density + reflected);
@@ -236,7 +243,7 @@ static bool reflect(struct path *path, const struct path_surface *surface)
     step_off(path->tracer, surface, 1.0, path->origin);
     if (path->reflections < ROULETTE_FROM_REFLECTION)
         return largest > 0.0;
-    double survival = fmin(largest, ROULETTE_MAX_SURVIVAL);
+    double survival = fmin(sqrt(largest), ROULETTE_MAX_SURVIVAL);
     if (next_random(path) >= survival)
         return false;
     for (int c = 0; c < 3; c++)
@@ -280,7 +287,7 @@ static void trace_pixel(const struct tracer *tracer, uint32_t x, uint32_t y)
         struct path path = {.tracer = tracer, .throughput = {1.0, 1.0, 1.0}};
         uint64_t pixel = (uint64_t)y * params->width + x;
         path.random = params->seed ^ (pixel * params->samples + i) * 0xd1342543de82ef95u;
-        next_bits(&path.random);
+        path.random = next_bits(&path.random); // neighbours start far apart
         double across = params->pixel_center ? 0.5 : next_random(&path);
         double down = params->pixel_center ? 0.5 : next_random(&path);
         float ray[3];
