@@ -9,6 +9,11 @@ static const uint32_t counts[CONE_SET_COUNT] = {
     [CONE_SET_9] = 9,    [CONE_SET_16] = 16, [CONE_SET_32] = 32,
 };
 
+uint32_t cone_set_count(enum cone_set set)
+{
+    return counts[set];
+}
+
 // Directions of equal solid angle on a spiral (Vogel 1979); each cone takes the half-angle that its
 // share of the hemisphere has.
 void cone_directions_init(struct cone_directions *directions, enum cone_set set)

@@ -11,6 +11,8 @@ struct cone_directions {
     float cones[VOXEL_MAX_CONES][4]; // unit direction about +Z; weight: cosine over the sum of them
 };
 
+uint32_t cone_set_count(enum cone_set set);
+
 // `set` is not CONE_SET_AUTO.
 void cone_directions_init(struct cone_directions *directions, enum cone_set set);
 

@@ -73,6 +73,12 @@ static enum voxel_resolution resolution_of(const struct frame *frame)
     return resolution;
 }
 
+// The cache is shared by views of different quality, so it does not depend on it.
+static enum cone_set cache_cones_of(const struct render_settings *settings)
+{
+    return settings->cone_set == CONE_SET_AUTO ? CACHE_CONES : settings->cone_set;
+}
+
 static struct voxel_volume_params volume_params(const struct frame *frame)
 {
     const struct render_settings *settings = &frame->params->settings;
@@ -81,13 +87,14 @@ static struct voxel_volume_params volume_params(const struct frame *frame)
         .edge = 32u << resolution_of(frame),
         .clip_levels = settings->gi_method == GI_METHOD_CLIPMAP ? settings->clip_levels : 0,
         .directions = settings->voxel_directions,
+        .cache_cones = cone_set_count(cache_cones_of(settings)),
     };
 }
 
 static bool same_params(const struct voxel_volume_params *a, const struct voxel_volume_params *b)
 {
     return a->method == b->method && a->edge == b->edge && a->clip_levels == b->clip_levels &&
-           a->directions == b->directions;
+           a->directions == b->directions && a->cache_cones == b->cache_cones;
 }
 
 // The volume to draw with: a view's own clipmap, or the grid; a shared clipmap where there are too
@@ -194,8 +201,7 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     struct voxel_block *block = &volume->uniforms;
     bool automatic = settings->cone_set == CONE_SET_AUTO;
     bool own_step = settings->cone_step > 0.0f;
-    // The cache is shared by views of different quality, so it does not depend on it.
-    fill_march(volume, automatic ? CACHE_CONES : settings->cone_set,
+    fill_march(volume, cache_cones_of(settings),
                own_step ? settings->cone_step : CACHE_STEP, block->march, block->cones);
     fill_march(volume, automatic ? frame->quality->cone_set : settings->cone_set,
                own_step ? settings->cone_step : frame->quality->cone_step, block->pixel_march,

@@ -52,6 +52,7 @@ static void plan_relight(struct voxel_volume *volume, const struct voxel_light_p
 {
     struct voxel_light_state *light = &volume->light;
     work->relight = light->relight;
+    work->direct = light->relight_direct;
     work->relight_end = volume->lit_levels;
     if (!light->relight)
         return;
@@ -63,9 +64,11 @@ static void plan_relight(struct voxel_volume *volume, const struct voxel_light_p
         work->relight_end = work->relight_first + 1;
         light->next_level = work->relight_end % volume->lit_levels;
         light->relight = light->next_level != 0;
+        light->relight_direct = light->relight_direct && light->relight;
     } else {
         light->next_level = 0;
         light->relight = false;
+        light->relight_direct = false;
     }
 }
 
@@ -79,6 +82,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     light->everything_asked = params->feedback;
     volume->frame = volume->frame % 0x7fffffffu + 1;
     if (volume->lit_key != params->key || light->generation == 0) {
+        light->relight_direct = true;
         volume->lit_key = params->key;
         light->bounce = 0;
         light->converged = false;
@@ -87,6 +91,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     }
     if (out_work->voxelize) {
         light->relight = true;
+        light->relight_direct = true;
         light->converged = false;
         light->quiet_frames = 0;
     }

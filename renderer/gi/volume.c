@@ -27,11 +27,17 @@ static void free_pools(struct voxel_volume *volume)
     gpu_buffer_destroy(&volume->free_list);
     gpu_buffer_destroy(&volume->lists);
     gpu_buffer_destroy(&volume->queue);
+    gpu_buffer_destroy(&volume->faces);
 }
 
 static struct gpu_buffer *make(struct voxel_volume *volume, const char *label, size_t words)
 {
     return gpu_buffer_create(volume->gpu, label, GPU_BUFFER_STATIC, words * 4, NULL);
+}
+
+static uint32_t face_words(const struct voxel_volume *volume)
+{
+    return FACE_WORDS + volume->params.cache_cones;
 }
 
 static bool create_pools(struct voxel_volume *volume)
@@ -45,10 +51,13 @@ static bool create_pools(struct voxel_volume *volume)
     volume->list_words = volume->level_count * cells + volume->mip_words;
     volume->cells = make(volume, "gi.cells", cells * CELL_WORDS);
     volume->surfels = make(volume, "gi.surfels", surfels * SURFEL_WORDS);
-    volume->free_list = make(volume, "gi.free", cells + 2 * surfels);
+    volume->face_capacity = volume->cell_capacity + volume->cell_capacity / 2;
+    volume->faces = make(volume, "gi.faces", (size_t)volume->face_capacity * face_words(volume));
+    volume->free_list = make(volume, "gi.free", cells + 2 * surfels + volume->face_capacity);
     volume->lists = make(volume, "gi.lists", volume->list_words);
     volume->queue = make(volume, "gi.queue", cells * CACHE_CLASSES);
-    return volume->cells && volume->surfels && volume->free_list && volume->lists && volume->queue;
+    return volume->cells && volume->surfels && volume->faces && volume->free_list &&
+           volume->lists && volume->queue;
 }
 
 static struct gpu_texture *create_texture(const struct voxel_volume *volume)
@@ -78,8 +87,8 @@ static bool create_storage(struct voxel_volume *volume)
     volume->tiles = make(volume, "gi.tiles", (size_t)TILE_CAPACITY * 4);
     volume->block = make(volume, "gi.uniforms", sizeof(struct voxel_block) / 4);
     uint32_t area = volume->params.edge * volume->params.edge;
-    volume->cell_capacity = 6 * area * volume->lit_levels;
-    volume->surfel_capacity = 8 * area * volume->lit_levels;
+    volume->cell_capacity = 4 * area * volume->lit_levels;
+    volume->surfel_capacity = 6 * area * volume->lit_levels;
     return volume->radiance && volume->index && volume->counters && volume->tiles &&
            volume->block && create_pools(volume);
 }
@@ -173,7 +182,7 @@ static bool lay_out(struct voxel_volume *volume, const struct resident *resident
     uint32_t lit_levels = clipmap ? choose_levels(volume, resident, extent) : 1;
     bool same = volume->radiance && lit_levels == volume->lit_levels;
     // Mips down to 8^3: no cone sees the scene more coarsely.
-    uint32_t levels = lit_levels + log2_of(edge) - 5;
+    uint32_t levels = lit_levels + log2_of(edge) - 3;
     volume->level_count = levels;
     volume->lit_levels = lit_levels;
     uint32_t doublings = lit_levels - 1;
@@ -350,6 +359,9 @@ bool voxel_volume_update(struct voxel_volume *volume, const struct resident *res
     } else if (transforms) {
         mark_moved_instances(volume, resident, kept);
     }
+    // Hits of cones outlive a camera's motion, but not geometry's.
+    if (volume->everything || transforms)
+        volume->epoch = (volume->epoch + 1) & 0xffu;
     volume->geometry_seen = now->geometry;
     volume->transforms_seen = now->transforms;
     return voxel_volume_prepare_work(volume, resident);
@@ -420,7 +432,12 @@ void voxel_volume_bind(struct voxel_volume *volume)
            (uvec4){volume->region_count, volume->region_voxels, volume->chunk_count,
                    volume->tile_capacity},
            sizeof(uvec4));
-    block->shape[0] = volume->lit_levels;
+    memcpy(block->shape,
+           (uvec4){volume->lit_levels, face_words(volume), volume->face_capacity, volume->epoch},
+           sizeof(uvec4));
+    // No cone blurs over more than two voxels of the coarsest level: wider ones take what is before
+    // an opening, or behind a corner, for part of it.
+    block->light[3] = 2.0f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
     block->options[0] = volume->cell_capacity;
     block->options[3] = volume->instance_count;
     fill_levels(volume, block);
@@ -436,6 +453,7 @@ void voxel_volume_bind(struct voxel_volume *volume)
     gpu_bind_storage(gpu, BIND_VOXEL_LISTS, volume->lists);
     gpu_bind_storage(gpu, BIND_VOXEL_SURFACES, volume->surfaces);
     gpu_bind_storage(gpu, BIND_CACHE_QUEUE, volume->queue);
+    gpu_bind_storage(gpu, BIND_FACES, volume->faces);
     gpu_bind_texture(gpu, UNIT_VOXEL_RADIANCE, volume->radiance);
     gpu_bind_image(gpu, IMAGE_VOXEL_RADIANCE, volume->radiance);
 }

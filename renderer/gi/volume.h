@@ -16,6 +16,7 @@ struct voxel_volume_params {
     uint32_t edge;         // voxels along an edge, a power of two
     uint32_t clip_levels;  // 0: as the scene calls for
     enum voxel_directions directions;
+    uint32_t cache_cones; // per voxel face
 };
 
 struct voxel_level {
@@ -36,6 +37,7 @@ struct voxel_instance {
 // How far light has come on its way to being converged; see gi/light.c.
 struct voxel_light_state {
     bool relight;       // voxels must be lit anew
+    bool relight_direct;    // by lamps, too, rather than by the cache alone
     bool start_pending; // the next frame begins a generation of the cache
     bool converged;
     bool unlimited;        // bounces
@@ -75,8 +77,10 @@ struct voxel_volume {
     struct gpu_buffer *lists;
     struct gpu_buffer *surfaces;
     struct gpu_buffer *queue;
+    struct gpu_buffer *faces;
     uint32_t cell_capacity;
     uint32_t surfel_capacity;
+    uint32_t face_capacity;
     uint32_t tile_capacity;
     uint32_t chunk_capacity;
     uint32_t cell_count; // cells up to the highest in use
@@ -95,6 +99,7 @@ struct voxel_volume {
     uint64_t geometry_seen;
     uint64_t transforms_seen;
     uint64_t surfaces_hash;
+    uint32_t epoch; // counts changes of geometry, modulo 256
     uint32_t *scratch; // chunks on their way to the GPU
     size_t scratch_words;
 

@@ -25,10 +25,15 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
         request ? voxel_program(frame, pass, "gi/cache_select.comp", "STAGE 0\n", out_error) : NULL;
     const struct gpu_program *arguments =
         select ? voxel_program(frame, pass, "gi/cache_select.comp", "STAGE 1\n", out_error) : NULL;
-    const struct gpu_program *trace =
-        arguments ? voxel_program(frame, pass, "gi/cache_trace.comp", "PIXEL_CONES 0\n", out_error)
+    const struct gpu_program *gather =
+        arguments ? voxel_program(frame, pass, "gi/cache_trace.comp", "PIXEL_CONES 0\nMARCH 0\n",
+                                  out_error)
                   : NULL;
-    if (!trace)
+    const struct gpu_program *march =
+        gather ? voxel_program(frame, pass, "gi/cache_trace.comp", "PIXEL_CONES 0\nMARCH 1\n",
+                               out_error)
+               : NULL;
+    if (!march)
         return false;
     gpu_buffer_fill(volume->counters, COUNTER_CACHE_CLASSES * 4, CACHE_CLASSES * 4, 0);
     uint32_t pixels = GROUP_EDGE * REQUEST_EDGE;
@@ -39,7 +44,9 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
     gpu_barrier(frame->gpu);
     gpu_dispatch(frame->gpu, arguments, 1, 1, 1);
     gpu_barrier(frame->gpu);
-    gpu_dispatch_indirect(frame->gpu, trace, volume->counters, COUNTER_CACHE_ARGUMENTS * 4);
+    gpu_dispatch_indirect(frame->gpu, gather, volume->counters, COUNTER_GATHER * 4);
+    gpu_barrier(frame->gpu);
+    gpu_dispatch_indirect(frame->gpu, march, volume->counters, COUNTER_MARCH * 4);
     return true;
 }
 

@@ -15,7 +15,9 @@ static bool voxel_relight_run(struct frame *frame, const struct pass *pass, stru
     struct voxel_volume *volume = frame->volume;
     bool feeds = frame_has(frame, EFFECT_BOUNCE) && volume->light.feeds;
     const struct gpu_program *program =
-        voxel_program(frame, pass, "voxel/voxel_relight.comp",
+        voxel_program(frame, pass,
+                      frame->light_work.direct ? "voxel/voxel_relight.comp"
+                                               : "voxel/voxel_bounce.comp",
                       feeds ? "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nFEEDBACK 1\n"
                             : "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nFEEDBACK 0\n",
                       out_error);

@@ -58,6 +58,7 @@ static void empty_regions(const struct frame *frame, const struct voxelize_progr
     if (volume->everything) {
         gpu_buffer_clear(volume->index);
         gpu_buffer_fill(volume->counters, 0, COUNTER_CACHE_LEFT * 4, 0);
+        gpu_buffer_fill(volume->counters, COUNTER_FACES * 4, 8, 0);
         gpu_texture_clear(volume->radiance);
         gpu_barrier(frame->gpu);
     } else {

@@ -1,8 +1,10 @@
 // Chooses which cached irradiances to trace next. In: lists of lit cells, cells. Out: queue of cell
 // faces by class of urgency.
 //
-// STAGE 0: faces that are not of this generation, those that pixels have asked for first, among them
-// the new before those that changed much before the rest. STAGE 1: arguments of the trace.
+// STAGE 0: faces whose cones have not been traced through the geometry as it is, and faces whose light
+// is not of this generation; those that pixels have asked for first, among them the new before those
+// that changed much before the rest. STAGE 1: arguments of the passes over them.
+#define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
@@ -19,12 +21,19 @@ layout(std430, binding = BIND_VOXEL_COUNTERS) buffer voxel_counter_storage
 
 layout(std430, binding = BIND_CACHE_QUEUE) buffer queue_storage
 {
-    uint queue[]; // CACHE_CLASSES runs of cell * 8 + face
+    uint queue[]; // CACHE_CLASSES runs of first words of face records
 };
 
 // Requests older than this many frames are out of sight.
 const uint REQUEST_FRAMES = 24u;
-const uint LARGE_CHANGE = 8u; // of 255
+const uint LARGE_CHANGE = 2u; // of 63
+
+void enqueue(uint urgency, uint entry)
+{
+    uint at = atomicAdd(counters[COUNTER_CACHE_CLASSES + urgency], 1u);
+    if (at < voxels.options.x)
+        queue[urgency * voxels.options.x + at] = entry;
+}
 
 #if STAGE == 0
 void main()
@@ -35,36 +44,57 @@ void main()
     uint cell = list_words[LIST_LIT * voxels.options.x + number];
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         uint words = cell_face(cell, face);
-        if (cells[words + CELL_FACE_NORMAL] == VOXEL_NONE)
+        if (words == VOXEL_NONE || faces[words + FACE_NORMAL] == VOXEL_NONE)
             continue;
-        uint state = cells[words + CELL_FACE_STATE];
-        if ((state & 0xffffu) == voxels.cache.x)
+        uint state = faces[words + FACE_STATE];
+        bool marched = (state & FACE_MARCHED) != 0u;
+        bool fresh = marched && (state >> FACE_EPOCH_BIT) == voxels.shape.w;
+        bool lit = (state & 0xffffu) == voxels.cache.x;
+        if (lit && fresh)
             continue;
-        uint asked = cells[words + CELL_FACE_REQUEST];
+        uint asked = faces[words + FACE_REQUEST];
         bool seen = asked != 0u && voxels.cache.y - asked < REQUEST_FRAMES;
         if (!seen && voxels.cache.w == 0u)
             continue;
-        bool traced = (state & FACE_FLAG_TRACED) != 0u;
-        bool lively = ((state >> 16) & 0xffu) >= LARGE_CHANGE;
-        uint urgency = (seen ? 0u : 3u) + (!traced ? 0u : lively ? 1u : 2u);
-        uint at = atomicAdd(counters[COUNTER_CACHE_CLASSES + urgency], 1u);
-        if (at < voxels.options.x)
-            queue[urgency * voxels.options.x + at] = cell * 8u + face;
+        if (!fresh)
+            enqueue(!seen ? 2u : marched ? 1u : 0u, words);
+        if (!lit && marched) {
+            bool lively = ((state >> FACE_CHANGE_BIT) & 63u) >= LARGE_CHANGE;
+            enqueue(CACHE_MARCH_CLASSES + (!seen ? 2u : lively ? 0u : 1u), words);
+        }
     }
 }
 #else
+uint count_classes(uint first, uint end)
+{
+    uint total = 0u;
+    for (uint i = first; i < end; i++)
+        total += min(counters[COUNTER_CACHE_CLASSES + i], voxels.options.x);
+    return total;
+}
+
+void set_arguments(uint at, uint count)
+{
+    counters[at] = (count + LINEAR_GROUP - 1u) / LINEAR_GROUP;
+    counters[at + 1u] = 1u;
+    counters[at + 2u] = 1u;
+    counters[at + 3u] = count;
+}
+
 void main()
 {
     if (gl_GlobalInvocationID.x != 0u)
         return;
-    uint total = 0u;
-    for (uint i = 0u; i < CACHE_CLASSES; i++)
-        total += counters[COUNTER_CACHE_CLASSES + i];
-    uint traced = min(total, voxels.cache.z);
-    counters[COUNTER_CACHE_LEFT] = total - traced;
-    counters[COUNTER_CACHE_TRACED] = traced;
-    counters[COUNTER_CACHE_ARGUMENTS] = (traced + LINEAR_GROUP - 1u) / LINEAR_GROUP;
-    counters[COUNTER_CACHE_ARGUMENTS + 1u] = 1u;
-    counters[COUNTER_CACHE_ARGUMENTS + 2u] = 1u;
+    // The budget is in faces to march. Looking up hits is cheap and shows an edit everywhere, so it
+    // has the first claim, but for a quarter.
+    uint to_march = count_classes(0u, CACHE_MARCH_CLASSES);
+    uint to_gather = count_classes(CACHE_MARCH_CLASSES, CACHE_CLASSES);
+    uint budget = voxels.cache.z;
+    uint gathered = min(to_gather, (budget - min(to_march, budget / 4u)) * CACHE_MARCH_COST);
+    uint marched = min(to_march, budget - gathered / CACHE_MARCH_COST);
+    set_arguments(COUNTER_MARCH, marched);
+    set_arguments(COUNTER_GATHER, gathered);
+    counters[COUNTER_CACHE_LEFT] = to_march - marched + to_gather - gathered;
+    counters[COUNTER_CACHE_TRACED] = marched * CACHE_MARCH_COST + gathered;
 }
 #endif

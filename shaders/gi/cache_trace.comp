@@ -1,5 +1,7 @@
-// Traces the cones of the chosen voxel faces. In: queue, cells, radiance texture. Out: the faces'
+// Finds the light of the chosen voxel faces. In: queue, face records, radiance texture. Out: the faces'
 // irradiance and how much it changed.
+//
+// MARCH 1: traces their cones, and keeps where each hits. MARCH 0: looks the light up at the hits.
 #define CONE_SMOOTH 0
 #include "lib/voxel_cells.glsl"
 #include "lib/gather.glsl"
@@ -16,44 +18,73 @@ layout(std430, binding = BIND_CACHE_QUEUE) readonly buffer queue_storage
     uint queue[];
 };
 
-// Relative change in 1/255, and of what cannot be told 255.
+// The queue's entry of an invocation, class by class; VOXEL_NONE beyond the last.
+uint find_entry(uint number)
+{
+#if MARCH
+    uint urgency = 0u;
+    uint count = counters[COUNTER_MARCH + 3u];
+#else
+    uint urgency = CACHE_MARCH_CLASSES;
+    uint count = counters[COUNTER_GATHER + 3u];
+#endif
+    if (number >= count)
+        return VOXEL_NONE;
+    for (;;) {
+        uint length = min(counters[COUNTER_CACHE_CLASSES + urgency], voxels.options.x);
+        if (number < length)
+            return queue[urgency * voxels.options.x + number];
+        number -= length;
+        urgency++;
+    }
+}
+
 uint relative_change(vec3 before, vec3 after)
 {
     float size = max(luminance(before), luminance(after));
     float difference = luminance(abs(after - before));
-    return uint(clamp(difference / max(size, 1e-9), 0.0, 1.0) * 255.0 + 0.5);
+    return uint(clamp(difference / max(size, 1e-9), 0.0, 1.0) * 63.0 + 0.5);
 }
 
 void main()
 {
-    uint number = gl_GlobalInvocationID.x;
-    if (number >= counters[COUNTER_CACHE_TRACED])
+    uint words = find_entry(gl_GlobalInvocationID.x);
+    if (words == VOXEL_NONE)
         return;
-    uint urgency = 0u;
-    while (number >= counters[COUNTER_CACHE_CLASSES + urgency]) {
-        number -= counters[COUNTER_CACHE_CLASSES + urgency];
-        urgency++;
-    }
-    uint entry = queue[urgency * voxels.options.x + number];
-    uint cell = entry >> 3;
-    uint words = cell_face(cell, entry & 7u);
+    uint state = faces[words + FACE_STATE];
+    uint cell = faces[words + FACE_CELL] >> 3;
     uint level = cells[cell * CELL_WORDS] >> CELL_LEVEL_BIT;
-    ivec3 voxel = slot_voxel(level, cells[cell * CELL_WORDS] & CELL_SLOT_MASK);
-    vec3 normal = octahedral_decode(unpackSnorm2x16(cells[words + CELL_FACE_NORMAL]));
-    uint bits = cells[words + CELL_FACE_PLACE];
+    vec3 corner = vec3(slot_voxel(level, cells[cell * CELL_WORDS] & CELL_SLOT_MASK));
+    vec3 normal = octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL]));
+    uint bits = faces[words + FACE_PLACE];
     vec3 place = vec3(bits & 1023u, (bits >> 10) & 1023u, bits >> 20) / 1023.0;
-    vec3 position = voxels.anchor.xyz + (vec3(voxel) + place) * voxels.levels[level].size.x;
-    gathered found = gather_diffuse(position, normal, vec2(1.0, 0.0));
-    vec3 before = vec3(unpackHalf2x16(cells[words + CELL_FACE_LIGHT]),
-                       unpackHalf2x16(cells[words + CELL_FACE_LIGHT + 1u]).x);
+    vec3 position = (corner + place) * voxels.levels[level].size.x;
+    // Neighbours look in different directions, so that interpolation between them averages more.
+    ivec3 odd = ivec3(corner) & 1;
+    float angle = float(odd.x + 2 * odd.y + 4 * odd.z) * (PI / 4.0);
+    gather_cones g = begin_gather(position, normal, vec2(cos(angle), sin(angle)));
+    gathered found = no_light();
+    for (uint i = 0u; i < uint(voxels.march.z); i++) {
+#if MARCH
+        uint hit;
+        add_cone(g, i, found, hit);
+        faces[words + FACE_WORDS + i] = hit;
+#else
+        add_cone_at_hit(g, i, faces[words + FACE_WORDS + i], found);
+#endif
+    }
+#if !MARCH
+    found.openness = face_light(words).a;
+#endif
+    vec3 before = face_light(words).rgb;
     vec3 light = min(found.light, vec3(65504.0));
-    uint change = relative_change(before, light);
-    cells[words + CELL_FACE_LIGHT] = packHalf2x16(light.rg);
-    cells[words + CELL_FACE_LIGHT + 1u] = packHalf2x16(vec2(light.b, found.openness));
-    cells[words + CELL_FACE_STATE] =
-        voxels.cache.x | (change << 16) | FACE_FLAG_VALID | FACE_FLAG_TRACED;
-    // Of the brightest light only: dark corners must not keep the whole from being done.
-    float weighted = luminance(abs(light - before));
-    atomicMax(counters[COUNTER_CACHE_CHANGE], floatBitsToUint(weighted));
+    faces[words + FACE_LIGHT] = packHalf2x16(light.rg);
+    faces[words + FACE_LIGHT + 1u] = packHalf2x16(vec2(light.b, found.openness));
+    uint epoch = MARCH != 0 ? voxels.shape.w : state >> FACE_EPOCH_BIT;
+    faces[words + FACE_STATE] = voxels.cache.x |
+                                (relative_change(before, light) << FACE_CHANGE_BIT) | FACE_VALID |
+                                FACE_MARCHED | (epoch << FACE_EPOCH_BIT);
+    // Against the brightest light: dark corners must not keep the whole from being done.
+    atomicMax(counters[COUNTER_CACHE_CHANGE], floatBitsToUint(luminance(abs(light - before))));
     atomicMax(counters[COUNTER_CACHE_PEAK], floatBitsToUint(luminance(light)));
 }

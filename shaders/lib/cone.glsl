@@ -15,6 +15,7 @@ struct cone {
     vec3 direction; // unit
     float tangent;  // of the half-angle
     float step;     // over the diameter
+    float widest;   // diameter in m that it does not grow beyond
     float reach_m;  // end
 };
 
@@ -22,6 +23,8 @@ struct cone_light {
     vec3 light;          // in units of the volume's scale
     float transmittance; // share that leaves the volume
     float occlusion;     // of 1, near hits counting more: for ambient occlusion
+    float hit_m;         // distance of the step that took up most, and the diameter read there
+    float hit_diameter_m;
 };
 
 const uint CONE_MAX_STEPS = 256u;
@@ -103,26 +106,35 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     cone_light result;
     result.light = vec3(0.0);
     result.occlusion = 0.0;
+    result.hit_m = 0.0;
+    result.hit_diameter_m = voxels.levels[0].size.x;
     float passed = 1.0;
+    float most = 0.0;
     float t = 0.0;
     float voxel = voxels.levels[0].size.x;
-    float longest = voxels.levels[voxels.counts.x - 1u].size.x;
     for (uint i = 0u; i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE; i++) {
-        float length_m = min(c.step * max(voxel, 2.0 * c.tangent * t), longest);
+        // Close to its start a cone is thinner than a voxel: no step is longer than one there.
+        float length_m = max(min(c.step, 1.0) * voxel, c.step * 2.0 * c.tangent * t);
+        length_m = min(length_m, max(c.widest, voxel));
         float middle = t + 0.5 * length_m;
         uint level;
         // Never narrower than the step, so that nothing falls between two samples.
-        float diameter = max(2.0 * c.tangent * middle, length_m);
+        float diameter = max(min(2.0 * c.tangent * middle, c.widest), length_m);
         vec4 value = sample_voxels(c.origin + middle * c.direction, c.direction, diameter, level);
         if (level >= voxels.counts.x)
             break;
-        float depth = value.a * length_m;
-        float absorbed = passed * (1.0 - exp(-depth));
+        float absorbed = passed * (1.0 - exp(-value.a * length_m));
         result.light += value.rgb * (absorbed / max(value.a, 1e-12));
         result.occlusion += absorbed * max(1.0 - middle / occlusion_reach_m, 0.0);
+        if (absorbed > most) {
+            most = absorbed;
+            result.hit_m = middle;
+            result.hit_diameter_m = diameter;
+        }
         passed -= absorbed;
         t += length_m;
-        voxel = voxels.levels[level].size.x;
+        // Where levels are coarser than the cone is wide, steps follow them.
+        voxel = max(voxel, diameter < voxels.levels[level].size.x ? voxels.levels[level].size.x : 0.0);
     }
     result.transmittance = passed > CONE_OPAQUE ? passed : 0.0;
     return result;

@@ -6,10 +6,10 @@
 
 // Which of the two sets of cones: the cache's, or that of pixels.
 #if PIXEL_CONES
-#define MARCH voxels.pixel_march
+#define MARCH_OF_SET voxels.pixel_march
 #define CONES voxels.pixel_cones
 #else
-#define MARCH voxels.march
+#define MARCH_OF_SET voxels.march
 #define CONES voxels.cones
 #endif
 
@@ -21,35 +21,78 @@ struct gathered {
     float openness;
 };
 
-// Gathers over the cones about `normal`, turned by the angle whose cosine and sine are `turn`.
-gathered gather_diffuse(vec3 position_world, vec3 normal, vec2 turn)
+// The hemisphere's cones about a normal.
+struct gather_cones {
+    mat3 axes;
+    cone c; // but for the direction
+};
+
+gathered no_light()
 {
-    gathered sum;
-    sum.light = vec3(0.0);
-    sum.openness = 0.0;
+    gathered none;
+    none.light = vec3(0.0);
+    none.openness = 0.0;
+    return none;
+}
+
+// `position` is relative to the anchor; `turn` is cosine and sine of a turn about the normal.
+gather_cones begin_gather(vec3 position, vec3 normal, vec2 turn)
+{
+    gather_cones g;
     mat3 axes = frame_about(normal);
-    vec3 tangent = axes[0] * turn.x + axes[1] * turn.y;
-    vec3 bitangent = axes[1] * turn.x - axes[0] * turn.y;
+    g.axes = mat3(axes[0] * turn.x + axes[1] * turn.y, axes[1] * turn.x - axes[0] * turn.y, normal);
     float voxel = voxels.levels[0].size.x;
-    vec3 origin = voxel_position(position_world);
-    for (uint level = 0u; level + 1u < voxels.counts.x && inside_level(level, origin) < 0.0; level++)
+    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, position) < 0.0; level++)
         voxel = voxels.levels[level + 1u].size.x;
-    cone c;
-    c.origin = origin + normal * (MARCH.y * voxel);
-    c.tangent = MARCH.w;
-    c.step = MARCH.x;
-    c.reach_m = 1e30;
-    for (uint i = 0u; i < uint(MARCH.z); i++) {
-        vec4 local = CONES[i];
-        c.direction = tangent * local.x + bitangent * local.y + normal * local.z;
-        cone_light found = trace_cone(c, voxels.light.x);
-        vec3 light = found.light;
+    g.c.origin = position + normal * (MARCH_OF_SET.y * voxel);
+    g.c.tangent = MARCH_OF_SET.w;
+    g.c.step = MARCH_OF_SET.x;
+    g.c.widest = voxels.light.w;
+    g.c.reach_m = 1e30;
+    return g;
+}
+
 #if ENVIRONMENT_LIGHT
-        light += environment_specular(c.direction, GATHER_ROUGHNESS) *
-                 (found.transmittance / voxels.anchor.w);
+vec3 escaped_light(vec3 direction, float transmittance)
+{
+    return environment_specular(direction, GATHER_ROUGHNESS) * (transmittance / voxels.anchor.w);
+}
 #endif
-        sum.light += local.w * light;
-        sum.openness += local.w * (1.0 - found.occlusion);
-    }
-    return sum;
+
+// Traces cone `i` and adds its share; `out_hit` remembers what counts most in it: distance in voxels
+// of the finest level (half), transmittance (8 bits), log2 of the diameter in those voxels (8 bits,
+// in sixteenths).
+void add_cone(gather_cones g, uint i, inout gathered sum, out uint out_hit)
+{
+    vec4 local = CONES[i];
+    g.c.direction = g.axes * local.xyz;
+    cone_light found = trace_cone(g.c, voxels.light.x);
+    vec3 light = found.light;
+#if ENVIRONMENT_LIGHT
+    light += escaped_light(g.c.direction, found.transmittance);
+#endif
+    sum.light += local.w * light;
+    sum.openness += local.w * (1.0 - found.occlusion);
+    float inverse = voxels.levels[0].size.y;
+    float diameter = clamp(log2(found.hit_diameter_m * inverse) * 16.0, 0.0, 255.0);
+    uint share = uint(found.transmittance * 255.0 + 0.5);
+    out_hit = (packHalf2x16(vec2(found.hit_m * inverse, 0.0)) & 0xffffu) | (share << 16) |
+              (uint(diameter + 0.5) << 24);
+}
+
+// Adds the light of cone `i` as it is now where it hit when it was traced.
+void add_cone_at_hit(gather_cones g, uint i, uint word, inout gathered sum)
+{
+    vec4 local = CONES[i];
+    vec3 direction = g.axes * local.xyz;
+    float hit_m = unpackHalf2x16(word & 0xffffu).x * voxels.levels[0].size.x;
+    float transmittance = float((word >> 16) & 0xffu) / 255.0;
+    float diameter = exp2(float(word >> 24) / 16.0) * voxels.levels[0].size.x;
+    uint level;
+    vec4 value = sample_voxels(g.c.origin + hit_m * direction, direction, diameter, level);
+    vec3 light = value.rgb * ((1.0 - transmittance) / max(value.a, 1e-12));
+#if ENVIRONMENT_LIGHT
+    light += escaped_light(direction, transmittance);
+#endif
+    sum.light += local.w * light;
 }

@@ -13,8 +13,9 @@ void request_faces(vec3 world, vec3 normal, uint frame_number)
         uint face = dominant_face(normal);
         for (int j = 0; j < 8; j++) {
             uint cell = find_cell(level + i, low + ivec3(j & 1, (j >> 1) & 1, j >> 2));
-            if (cell != VOXEL_NONE)
-                cells[cell_face(cell, face) + CELL_FACE_REQUEST] = frame_number;
+            uint words = cell == VOXEL_NONE ? VOXEL_NONE : cell_face(cell, face);
+            if (words != VOXEL_NONE)
+                faces[words + FACE_REQUEST] = frame_number;
         }
         if (room >= 4.0)
             return;

@@ -1,12 +1,6 @@
 // Looks up the irradiance cache between voxel faces.
 #include "lib/voxel_cells.glsl"
 
-vec4 face_light(uint words)
-{
-    return vec4(unpackHalf2x16(cells[words + CELL_FACE_LIGHT]),
-                unpackHalf2x16(cells[words + CELL_FACE_LIGHT + 1u]));
-}
-
 // The finest level that holds a place with all its neighbours; `out_room` is how many voxels it lies
 // inside. The number of levels if there is none.
 uint cache_level(vec3 position, out float out_room)
@@ -40,8 +34,10 @@ void add_cached(uint level, vec3 position, vec3 normal, float share, inout vec4 
         if (cell == VOXEL_NONE)
             continue;
         uint words = cell_face(cell, face);
-        uint direction = cells[words + CELL_FACE_NORMAL];
-        if (direction == VOXEL_NONE || (cells[words + CELL_FACE_STATE] & FACE_FLAG_VALID) == 0u)
+        if (words == VOXEL_NONE)
+            continue;
+        uint direction = faces[words + FACE_NORMAL];
+        if (direction == VOXEL_NONE || (faces[words + FACE_STATE] & FACE_VALID) == 0u)
             continue;
         vec3 near = mix(1.0 - t, t, vec3(step));
         float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
@@ -59,8 +55,10 @@ void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout 
         return;
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         uint words = cell_face(cell, face);
-        uint direction = cells[words + CELL_FACE_NORMAL];
-        if (direction == VOXEL_NONE || (cells[words + CELL_FACE_STATE] & FACE_FLAG_VALID) == 0u)
+        if (words == VOXEL_NONE)
+            continue;
+        uint direction = faces[words + FACE_NORMAL];
+        if (direction == VOXEL_NONE || (faces[words + FACE_STATE] & FACE_VALID) == 0u)
             continue;
         float w = 0.01 + max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
         sum += w * face_light(words);

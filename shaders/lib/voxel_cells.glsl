@@ -15,9 +15,23 @@ layout(std430, binding = BIND_CELLS) CELLS_ACCESS buffer cell_storage
     uint cells[]; // CELL_WORDS each
 };
 
+layout(std430, binding = BIND_FACES) CELLS_ACCESS buffer face_storage
+{
+    uint faces[]; // voxels.shape.y words each
+};
+
+// First word of a cell's face record; VOXEL_NONE if it has none.
 uint cell_face(uint cell, uint face)
 {
-    return cell * CELL_WORDS + CELL_FACES + face * CELL_FACE_WORDS;
+    uint record = cells[cell * CELL_WORDS + CELL_FACES + face];
+    return record == 0u ? VOXEL_NONE : (record - 1u) * voxels.shape.y;
+}
+
+// Irradiance / pi / scale, and openness.
+vec4 face_light(uint words)
+{
+    return vec4(unpackHalf2x16(faces[words + FACE_LIGHT]),
+                unpackHalf2x16(faces[words + FACE_LIGHT + 1u]));
 }
 
 // The cell of a voxel of the level, or VOXEL_NONE.

@@ -35,7 +35,8 @@
 #define BIND_VOXEL_SURFACES 25
 #define BIND_CACHE_QUEUE    26
 #define BIND_INDIRECT       27
-#define STORAGE_BINDINGS    28
+#define BIND_FACES          28
+#define STORAGE_BINDINGS    29
 
 // Image units
 #define IMAGE_VOXEL_RADIANCE 0

@@ -17,22 +17,30 @@
 #define VOXEL_TAG_SURFEL 0x80000000u
 #define VOXEL_NONE       0xffffffffu
 
-// A cell is an occupied voxel. Word 0: slot in its level | level << 28, or VOXEL_NONE; word 1:
-// first surfel. Then CELL_FACE_WORDS for each face: the mean normal and place of its surfels,
-// irradiance over pi and its state.
-#define CELL_WORDS        40u
-#define CELL_SURFEL       1u
-#define CELL_FACES        4u
-#define CELL_FACE_WORDS   6u
-#define CELL_FACE_NORMAL  0u // octahedral, 2 x 16 bits; VOXEL_NONE: the face has no surface
-#define CELL_FACE_PLACE   1u // within the voxel, 3 x 10 bits
-#define CELL_FACE_LIGHT   2u // two words: irradiance / pi / scale as 3 halves, openness as a half
-#define CELL_FACE_STATE   4u // generation (16 bits) | change << 16 (8 bits) | flags << 24
-#define CELL_FACE_REQUEST 5u // frame of the newest request
-#define CELL_LEVEL_BIT    28
-#define CELL_SLOT_MASK    0x0fffffffu
-#define FACE_FLAG_VALID   0x01000000u
-#define FACE_FLAG_TRACED  0x02000000u // by cones, not inherited from another level
+// A cell is an occupied voxel. Word 0: slot in its level | level << 28, or VOXEL_NONE; word 1: first
+// surfel; then 1 + face record for each face that has a surface, else 0.
+#define CELL_WORDS     10u
+#define CELL_SURFEL    1u
+#define CELL_FACES     2u
+#define CELL_LEVEL_BIT 28
+#define CELL_SLOT_MASK 0x0fffffffu
+
+// A record of the irradiance cache: a voxel face that has a surface. Its words, and behind them one
+// for each cone: where it hits (distance in voxels of the finest level) and the share that leaves the
+// volume, as halves. So long as geometry stays, a cone's light is one look-up there.
+#define FACE_WORDS    12u // before the cones
+#define FACE_NORMAL   0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: no surface any more
+#define FACE_PLACE    1u  // mean, within the voxel, 3 x 10 bits
+#define FACE_LIGHT    2u  // two words: irradiance / pi / scale as 3 halves, openness as a half
+#define FACE_STATE    4u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
+#define FACE_REQUEST  5u  // frame of the newest request
+#define FACE_DIRECT   6u  // two words: emitted and directly lit radiance / scale, optical depth
+#define FACE_ALBEDO   8u  // reflectance, 3 x 10 bits
+#define FACE_CELL     9u  // cell * 8 + face
+#define FACE_VALID    0x400000u // its light means something
+#define FACE_MARCHED  0x800000u // its cones' hits, too; epoch tells of which geometry
+#define FACE_CHANGE_BIT 16
+#define FACE_EPOCH_BIT  24
 
 // A surfel gathers what a surface has in a voxel, of those triangles whose dominant axis and side
 // (0 to 5, as faces) agree. Sums are integers, so that no order of triangles changes them.
@@ -62,13 +70,21 @@
 #define COUNTER_CACHE_TRACED     9
 #define COUNTER_CACHE_PEAK       10 // largest light of one, likewise
 #define COUNTER_TILES            12 // arguments of the pass over large triangles
-#define COUNTER_CACHE_ARGUMENTS  16
-#define COUNTER_CACHE_CLASSES    20 // entries of each class of urgency
+#define COUNTER_MARCH            16 // arguments of tracing cones; number of faces
+#define COUNTER_GATHER           20 // likewise of looking up their hits
+#define COUNTER_CACHE_CLASSES    24 // faces of each class of urgency
+#define COUNTER_FACES            30
+#define COUNTER_FREE_FACES       31
 #define COUNTER_LISTS            32
 #define COUNTER_LIST_WORDS       4
 #define COUNTER_COUNT            (COUNTER_LISTS + VOXEL_MAX_LEVELS * COUNTER_LIST_WORDS)
 
-#define CACHE_CLASSES 6u
+// Faces to march: never marched and asked for by pixels, the rest of those asked for, others. Faces
+// to gather: asked for and lively, asked for, others.
+#define CACHE_CLASSES       6u
+#define CACHE_MARCH_CLASSES 3u
+// Marching a face costs as much as gathering so many.
+#define CACHE_MARCH_COST 10u
 
 // List 0 has the cells that are lit, of all levels; list n the voxels of level n that are filtered
 // from the finer level.
@@ -106,7 +122,8 @@ struct voxel_block {
     vec4 march;   // of the cache's cones: step over diameter, start offset in voxels, their number,
                   // tangent of the half-angle
     vec4 pixel_march; // of the cones that start at pixels, likewise
-    uvec4 shape;   // levels that have cells of their own: those beyond are mips of the last; unused
+    uvec4 shape;   // levels that have cells of their own: those beyond are mips of the last; words of a
+                   // face record; their capacity; epoch of geometry
     uvec4 options; // capacity of lists; first level to light, or the one to filter; end of those;
                    // instances
     vec4 cones[VOXEL_MAX_CONES]; // direction about +Z; w: weight, cosine over the sum of cosines

@@ -27,6 +27,12 @@ void main()
         free_words[voxels.counts.z + atomicAdd(counters[COUNTER_FREE_SURFELS], 1u)] = surfel;
         surfel = surfels[surfel * SURFEL_WORDS + SURFEL_NEXT];
     }
+    for (uint face = 0u; face < VOXEL_FACES; face++) {
+        uint record = cells[cell * CELL_WORDS + CELL_FACES + face];
+        if (record != 0u)
+            free_words[voxels.counts.z + 2u * voxels.counts.w +
+                       atomicAdd(counters[COUNTER_FREE_FACES], 1u)] = record - 1u;
+    }
     cells[cell * CELL_WORDS] = VOXEL_NONE;
     free_words[atomicAdd(counters[COUNTER_FREE_CELLS], 1u)] = cell;
     voxel_index[voxels.levels[level].index.x + slot] = 0u;

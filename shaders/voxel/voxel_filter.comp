@@ -4,7 +4,7 @@
 //
 // For each face the two voxels of a column are seen one behind the other, then the four columns are
 // averaged (anisotropic pre-integration, Crassin et al. 2011). What is kept is optical depth.
-#include "lib/voxel_cells.glsl"
+#include "lib/voxel_faces.glsl"
 #include "lib/voxel_texture.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
@@ -14,11 +14,6 @@ layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
 layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
 {
     uint list_words[];
-};
-
-layout(std430, binding = BIND_VOXEL_COUNTERS) readonly buffer voxel_counter_storage
-{
-    uint counters[];
 };
 
 #define LEVEL voxels.options.y
@@ -82,29 +77,25 @@ void inherit_irradiance(uint slot, ivec3 corner)
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         vec4 sum = vec4(0.0);
         float count = 0.0;
-        uint normal = VOXEL_NONE;
+        uint like = VOXEL_NONE;
         for (int i = 0; i < 8; i++) {
             uint child = find_cell(FINER, corner + ivec3(i & 1, (i >> 1) & 1, i >> 2));
-            if (child == VOXEL_NONE)
+            uint from = child == VOXEL_NONE ? VOXEL_NONE : cell_face(child, face);
+            if (from == VOXEL_NONE || faces[from + FACE_NORMAL] == VOXEL_NONE ||
+                (faces[from + FACE_STATE] & FACE_VALID) == 0u)
                 continue;
-            uint from = cell_face(child, face);
-            bool valid = cells[from + CELL_FACE_NORMAL] != VOXEL_NONE &&
-                         (cells[from + CELL_FACE_STATE] & FACE_FLAG_VALID) != 0u;
-            if (!valid)
-                continue;
-            normal = cells[from + CELL_FACE_NORMAL];
-            sum += vec4(unpackHalf2x16(cells[from + CELL_FACE_LIGHT]),
-                        unpackHalf2x16(cells[from + CELL_FACE_LIGHT + 1u]));
+            like = from;
+            sum += face_light(from);
             count += 1.0;
         }
-        if (count == 0.0)
+        uint to = like == VOXEL_NONE ? VOXEL_NONE : make_face(cell, LEVEL, corner >> 1, face);
+        if (to == VOXEL_NONE)
             continue;
-        uint to = cell_face(cell, face);
         sum /= count;
-        cells[to + CELL_FACE_NORMAL] = normal;
-        cells[to + CELL_FACE_LIGHT] = packHalf2x16(sum.xy);
-        cells[to + CELL_FACE_LIGHT + 1u] = packHalf2x16(sum.zw);
-        cells[to + CELL_FACE_STATE] = FACE_FLAG_VALID;
+        faces[to + FACE_NORMAL] = faces[like + FACE_NORMAL];
+        faces[to + FACE_LIGHT] = packHalf2x16(sum.xy);
+        faces[to + FACE_LIGHT + 1u] = packHalf2x16(sum.zw);
+        faces[to + FACE_STATE] = FACE_VALID;
     }
 }
 #endif

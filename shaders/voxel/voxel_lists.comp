@@ -33,6 +33,8 @@ void main()
     uint cells_left = uint(max(int(counters[COUNTER_FREE_CELLS]), 0));
     uint left = uint(max(int(counters[COUNTER_FREE_SURFELS]), 0));
     counters[COUNTER_FREE_CELLS] = cells_left;
+    counters[COUNTER_FREE_FACES] = uint(max(int(counters[COUNTER_FREE_FACES]), 0));
+    counters[COUNTER_FACES] = min(counters[COUNTER_FACES], voxels.shape.z);
     for (uint i = 0u; i < counters[COUNTER_RETURNED_SURFELS]; i++)
         free_words[voxels.counts.z + left++] =
             free_words[voxels.counts.z + voxels.counts.w + i];

@@ -1,12 +1,11 @@
 // Lights the occupied voxels of some levels. In: list of cells, surfels, materials, lights, shadow maps,
-// irradiance cache. Out: radiance texture, and each face's normal and place.
+// irradiance cache. Out: radiance texture, and the face records but for their indirect light.
 //
 // A face's radiance is the mean of the surfels that face its way: emission, and reflectance times
 // direct and (FEEDBACK 1) indirect irradiance. Materials are looked up here, so that editing one
 // does not voxelize anything anew.
-#define CELLS_ACCESS
-#include "lib/voxel_cells.glsl"
-#include "lib/voxel_texture.glsl"
+#include "lib/voxel_faces.glsl"
+#include "lib/voxel_radiate.glsl"
 #define SHADOW_TAPS 2u
 #define VIEWLESS 1
 #include "lib/lighting.glsl"
@@ -21,11 +20,6 @@ layout(std430, binding = BIND_SURFELS) readonly buffer surfel_storage
 layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
 {
     uint list_words[];
-};
-
-layout(std430, binding = BIND_VOXEL_COUNTERS) readonly buffer voxel_counter_storage
-{
-    uint counters[];
 };
 
 layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
@@ -150,44 +144,43 @@ void main()
         if ((m.info.x & MATERIAL_DOUBLE_SIDED) != 0u)
             add_surfel(sides[(key & 7u) ^ 1u], word, m, directly, -1.0);
     }
-    vec4 faces[VOXEL_FACES];
-    for (uint i = 0u; i < VOXEL_FACES; i++)
-        faces[i] = vec4(0.0);
+    face_sums sums = no_face_sums();
+    ivec3 voxel = ivec3(corner);
     for (uint i = 0u; i < VOXEL_FACES; i++) {
-        uint words = cell_face(cell, i);
         if (sides[i].weight == 0.0) {
-            cells[words + CELL_FACE_NORMAL] = VOXEL_NONE;
+            uint old = cell_face(cell, i);
+            if (old != VOXEL_NONE)
+                faces[old + FACE_NORMAL] = VOXEL_NONE;
             continue;
         }
+        uint words = make_face(cell, level, voxel, i);
+        if (words == VOXEL_NONE)
+            continue;
         float inverse = 1.0 / sides[i].weight;
         vec3 normal = safe_normalize(sides[i].normal, face_direction(i));
         vec3 place = clamp(sides[i].place * inverse, 0.0, 1.0);
-        cells[words + CELL_FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));
-        uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
-        cells[words + CELL_FACE_PLACE] =
-            packed_place.x | (packed_place.y << 10) | (packed_place.z << 20);
         vec3 position = voxels.anchor.xyz + (corner + place) * voxels.levels[level].size.x;
-        vec3 irradiance = direct_irradiance(position, normal);
+        vec3 albedo = clamp(sides[i].reflectance * inverse, 0.0, 1.0);
+        vec3 direct = sides[i].emission * (inverse / voxels.anchor.w) +
+                      albedo * direct_irradiance(position, normal);
+        // In proportion to what is covered: the parts of a slanted wall that lie in neighbouring
+        // voxels then add up to a whole one.
+        float opacity = min(sides[i].opacity * inverse, 1.0);
+        float depth = coverage(sides[i].mask, i >> 1u) *
+                      min(-log(max(1.0 - opacity, 1e-9)), float(VOXEL_MAX_DEPTH));
+        direct = min(direct, vec3(65504.0));
+        uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
+        uvec3 packed_albedo = uvec3(albedo * 1023.0 + 0.5);
+        faces[words + FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));
+        faces[words + FACE_PLACE] = packed_place.x | (packed_place.y << 10) | (packed_place.z << 20);
+        faces[words + FACE_DIRECT] = packHalf2x16(direct.rg);
+        faces[words + FACE_DIRECT + 1u] = packHalf2x16(vec2(direct.b, depth));
+        faces[words + FACE_ALBEDO] =
+            packed_albedo.x | (packed_albedo.y << 10) | (packed_albedo.z << 20);
 #if FEEDBACK
-        irradiance += vec3(unpackHalf2x16(cells[words + CELL_FACE_LIGHT]),
-                           unpackHalf2x16(cells[words + CELL_FACE_LIGHT + 1u]).x);
+        direct += albedo * face_light(words).rgb;
 #endif
-        vec3 light = sides[i].emission * (inverse / voxels.anchor.w) +
-                     sides[i].reflectance * inverse * irradiance;
-        float covered = coverage(sides[i].mask, i >> 1u) * sides[i].opacity * inverse;
-        float depth = min(-log(max(1.0 - covered, 1e-9)), float(VOXEL_MAX_DEPTH));
-#if VOXEL_DIRECTIONS == 1
-        faces[0] += vec4(depth * light, depth);
-#else
-        for (uint j = 0u; j < VOXEL_FACES; j++) {
-            float share = depth * max(dot(normal, face_direction(j)), 0.0);
-            faces[j] += vec4(share * light, share);
-        }
-#endif
+        add_face(sums, normal, vec4(direct, depth));
     }
-    ivec3 address = slot_address(level, slot);
-    for (uint j = 0u; j < voxels.counts.y; j++) {
-        float excess = max(faces[j].a / float(VOXEL_MAX_DEPTH), 1.0);
-        store_voxel_face(level, address, j, faces[j] / excess);
-    }
+    store_faces(sums, level, slot);
 }

@@ -1,0 +1,54 @@
+// Makes face records. A new one takes its light from the next coarser level, so that a voxel that
+// comes into reach is not black until its cones are traced.
+#include "lib/voxel_cells.glsl"
+
+layout(std430, binding = BIND_VOXEL_COUNTERS) coherent buffer voxel_counter_storage
+{
+    uint counters[];
+};
+
+layout(std430, binding = BIND_VOXEL_FREE) coherent buffer voxel_free_storage
+{
+    uint free_words[]; // free cells, surfels, surfels given back, face records
+};
+
+uint free_faces_start()
+{
+    return voxels.counts.z + 2u * voxels.counts.w;
+}
+
+void inherit_light(uint words, uint level, ivec3 voxel, uint face)
+{
+    if (level + 1u >= voxels.shape.x || !voxel_in_level(level + 1u, voxel >> 1))
+        return;
+    uint parent = find_cell(level + 1u, voxel >> 1);
+    uint from = parent == VOXEL_NONE ? VOXEL_NONE : cell_face(parent, face);
+    if (from == VOXEL_NONE || (faces[from + FACE_STATE] & FACE_VALID) == 0u)
+        return;
+    faces[words + FACE_LIGHT] = faces[from + FACE_LIGHT];
+    faces[words + FACE_LIGHT + 1u] = faces[from + FACE_LIGHT + 1u];
+    faces[words + FACE_STATE] = FACE_VALID;
+}
+
+// The record's first word, making it where there is none; VOXEL_NONE if there is no room.
+uint make_face(uint cell, uint level, ivec3 voxel, uint face)
+{
+    uint words = cell_face(cell, face);
+    if (words != VOXEL_NONE)
+        return words;
+    uint record;
+    int left = int(atomicAdd(counters[COUNTER_FREE_FACES], 0xffffffffu));
+    if (left > 0)
+        record = free_words[free_faces_start() + uint(left) - 1u];
+    else
+        record = atomicAdd(counters[COUNTER_FACES], 1u);
+    if (record >= voxels.shape.z)
+        return VOXEL_NONE;
+    cells[cell * CELL_WORDS + CELL_FACES + face] = record + 1u;
+    words = record * voxels.shape.y;
+    for (uint i = 0u; i < FACE_WORDS; i++)
+        faces[words + i] = 0u;
+    faces[words + FACE_CELL] = cell * 8u + face;
+    inherit_light(words, level, voxel, face);
+    return words;
+}

@@ -1,0 +1,45 @@
+// Lights the occupied voxels of some levels with what the irradiance cache holds, where their direct
+// light is as it was. In: list of cells, face records. Out: radiance texture.
+#define CELLS_ACCESS readonly
+#include "lib/voxel_cells.glsl"
+#include "lib/voxel_radiate.glsl"
+
+layout(local_size_x = LINEAR_GROUP) in;
+
+layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
+{
+    uint list_words[];
+};
+
+layout(std430, binding = BIND_VOXEL_COUNTERS) readonly buffer voxel_counter_storage
+{
+    uint counters[];
+};
+
+void main()
+{
+    uint number = gl_GlobalInvocationID.x;
+    if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
+        return;
+    uint cell = list_words[LIST_LIT * voxels.options.x + number];
+    uint word = cells[cell * CELL_WORDS];
+    uint level = word >> CELL_LEVEL_BIT;
+    if (level < voxels.options.y || level >= voxels.options.z)
+        return;
+    face_sums sums = no_face_sums();
+    for (uint i = 0u; i < VOXEL_FACES; i++) {
+        uint words = cell_face(cell, i);
+        if (words == VOXEL_NONE || faces[words + FACE_NORMAL] == VOXEL_NONE)
+            continue;
+        vec3 normal = octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL]));
+        vec4 direct = vec4(unpackHalf2x16(faces[words + FACE_DIRECT]),
+                           unpackHalf2x16(faces[words + FACE_DIRECT + 1u]));
+        uint bits = faces[words + FACE_ALBEDO];
+        vec3 albedo = vec3(bits & 1023u, (bits >> 10) & 1023u, bits >> 20) / 1023.0;
+#if FEEDBACK
+        direct.rgb += albedo * face_light(words).rgb;
+#endif
+        add_face(sums, normal, direct);
+    }
+    store_faces(sums, level, word & CELL_SLOT_MASK);
+}
