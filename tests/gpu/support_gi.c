@@ -1,0 +1,153 @@
+#include "support_gi.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+const enum gi_method gi_proved_methods[GI_PROVED_METHODS] = {GI_METHOD_CLIPMAP, GI_METHOD_GRID};
+
+bool gi_test_is_full(void)
+{
+    const char *value = getenv("VOXCAST_TEST_FULL");
+    return value && strcmp(value, "0") != 0 && value[0] != '\0';
+}
+
+static void print_check(struct gi_report *report, bool good, const char *text)
+{
+    report->checked++;
+    report->bad += !good;
+    print_message("  %-3s %s\n", good ? "ok" : "BAD", text);
+    fflush(stdout);
+}
+
+void gi_check(struct gi_report *report, bool good, const char *format, ...)
+{
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof(text), format, arguments);
+    va_end(arguments);
+    print_check(report, good, text);
+}
+
+void gi_check_ratio(struct gi_report *report, double measured, double expected, double tolerance,
+                    const char *format, ...)
+{
+    char name[256], text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(name, sizeof(name), format, arguments);
+    va_end(arguments);
+    double ratio = measured / expected;
+    snprintf(text, sizeof(text), "%s: measured %.6g expected %.6g ratio %.4f (within %g)", name,
+             measured, expected, ratio, tolerance);
+    print_check(report, fabs(ratio - 1.0) <= tolerance, text);
+}
+
+void gi_report_finish(const struct gi_report *report)
+{
+    print_message("  %u of %u good\n", report->checked - report->bad, report->checked);
+    if (report->bad > 0 || report->checked == 0)
+        fail_msg("%u of %u checks are bad; see the lines above", report->bad, report->checked);
+}
+
+static void copy_pixels(const struct frame_pixels *pixels, struct test_picture *picture)
+{
+    size_t row_values = (size_t)pixels->width * 4;
+    picture->width = pixels->width;
+    picture->height = pixels->height;
+    if (!picture->pixels)
+        picture->pixels = malloc(row_values * pixels->height * sizeof(float));
+    assert_non_null(picture->pixels);
+    for (uint32_t y = 0; y < pixels->height; y++) {
+        const uint8_t *row = pixels->planes[0] + (size_t)y * pixels->row_pitch_bytes[0];
+        float *out = picture->pixels + y * row_values;
+        if (pixels->output == FRAME_OUTPUT_LINEAR)
+            memcpy(out, row, row_values * sizeof(float));
+        for (size_t i = 0; i < row_values && pixels->output == FRAME_OUTPUT_RGBA8; i++)
+            out[i] = row[i];
+    }
+}
+
+uint32_t gi_converge(struct renderer *renderer, struct view *view,
+                     const struct frame_params *params, struct test_picture *out_picture)
+{
+    struct error error = {""};
+    struct frame_pixels pixels;
+    for (uint32_t frame = 0; frame < GI_MAX_FRAMES; frame++) {
+        enum render_result result = renderer_view_draw(renderer, view, params, &error);
+        if (result == RENDER_UNCHANGED && frame > 0)
+            return frame;
+        if (result != RENDER_DRAWN)
+            fail_msg("frame %u: result %d: %s", frame, result, error.message);
+        assert_true(renderer_view_collect(renderer, view, true, &pixels));
+        copy_pixels(&pixels, out_picture);
+        renderer_view_release(renderer, view);
+    }
+    fail_msg("not converged after %u frames", GI_MAX_FRAMES);
+    return GI_MAX_FRAMES;
+}
+
+struct test_picture gi_draw(struct scene *scene, const struct frame_params *params)
+{
+    struct renderer *renderer = test_renderer();
+    struct error error = {""};
+    if (!renderer_set_scene(renderer, scene, &error))
+        fail_msg("%s", error.message);
+    struct view *view = renderer_view_create(renderer);
+    assert_non_null(view);
+    struct test_picture picture = {0};
+    gi_converge(renderer, view, params, &picture);
+    renderer_view_destroy(renderer, &view);
+    renderer_set_scene(renderer, NULL, &error);
+    return picture;
+}
+
+void gi_picture_finish(struct test_picture *picture)
+{
+    free(picture->pixels);
+    *picture = (struct test_picture){0};
+}
+
+void gi_mean(const float *pixels, uint32_t width, uint32_t height, double out_rgb[3])
+{
+    size_t count = (size_t)width * height;
+    for (size_t c = 0; c < 3; c++) {
+        out_rgb[c] = 0.0;
+        for (size_t i = 0; i < count; i++)
+            out_rgb[c] += pixels[4 * i + c] / (double)count;
+    }
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+double gi_quantile(const struct test_picture *picture, double share)
+{
+    size_t count = (size_t)picture->width * picture->height;
+    float *values = malloc(count * sizeof(float));
+    assert_non_null(values);
+    for (size_t i = 0; i < count; i++)
+        values[i] = picture->pixels[4 * i];
+    qsort(values, count, sizeof(float), compare_floats);
+    double value = values[(size_t)(share * (double)(count - 1) + 0.5)];
+    free(values);
+    return value;
+}
+
+struct frame_params gi_params(uint32_t width, uint32_t height, enum gi_method method)
+{
+    struct frame_params params = test_params(width, height, FRAME_OUTPUT_LINEAR);
+    params.quality = QUALITY_INTERACTIVE;
+    params.settings.gi_method = method;
+    params.settings.soft_shadows = false;
+    return params;
+}

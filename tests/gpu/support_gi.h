@@ -1,0 +1,52 @@
+// What the tests of global illumination share: pictures drawn until they have converged, their
+// means, and a report that prints every measured figure and fails at the end.
+#ifndef VOXCAST_TESTS_GPU_SUPPORT_GI_H
+#define VOXCAST_TESTS_GPU_SUPPORT_GI_H
+
+#include "support_gpu.h"
+#include "support_path_tracer.h"
+
+// Methods to be proved, in the order of `enum gi_method` without `none`.
+#define GI_PROVED_METHODS 2u
+extern const enum gi_method gi_proved_methods[GI_PROVED_METHODS];
+
+// Whether VOXCAST_TEST_FULL is set: run every combination, not a selection.
+bool gi_test_is_full(void);
+
+// Prints one line, "ok" or "BAD" and the text, and counts what is bad.
+struct gi_report {
+    uint32_t checked;
+    uint32_t bad;
+};
+void gi_check(struct gi_report *report, bool good, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// Checks |measured / expected - 1| <= tolerance.
+void gi_check_ratio(struct gi_report *report, double measured, double expected, double tolerance,
+                    const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+// Fails the test if anything was bad or nothing was checked.
+void gi_report_finish(const struct gi_report *report);
+
+// Draws with the same parameters until RENDER_UNCHANGED; fails the test if that takes more than
+// GI_MAX_FRAMES. The scene must have been shown by renderer_set_scene().
+#define GI_MAX_FRAMES 512u
+uint32_t gi_converge(struct renderer *renderer, struct view *view,
+                     const struct frame_params *params, struct test_picture *out_picture);
+
+// Shows the scene, draws it in a view of its own until it has converged, and hides it again. The
+// picture is of floats for FRAME_OUTPUT_LINEAR, and of bytes as floats 0..255 for RGBA8.
+struct test_picture gi_draw(struct scene *scene, const struct frame_params *params);
+
+void gi_picture_finish(struct test_picture *picture);
+
+// Mean of red, green and blue.
+void gi_mean(const float *pixels, uint32_t width, uint32_t height, double out_rgb[3]);
+
+// What a share of the red values is at most: 0 the smallest, 0.5 the median, 1 the largest.
+double gi_quantile(const struct test_picture *picture, double share);
+
+// As test_params(), for a method: linear output, direct light as the path tracer has it.
+struct frame_params gi_params(uint32_t width, uint32_t height, enum gi_method method);
+
+#endif

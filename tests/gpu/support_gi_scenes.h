@@ -1,0 +1,57 @@
+// Scenes made by code for the tests of global illumination. All surfaces are matte. Each has one
+// camera, that the tests use, and fails the test when memory ends.
+#ifndef VOXCAST_TESTS_GPU_SUPPORT_GI_SCENES_H
+#define VOXCAST_TESTS_GPU_SUPPORT_GI_SCENES_H
+
+#include "renderer/scene/scene.h"
+#include "renderer/settings.h"
+
+// A turn about the axis (2, 3, 1), which no voxel lies along.
+void gi_turn(float angle_rad, float out_rotation[4]);
+
+// A closed cube about the origin, seen from inside.
+struct gi_box_params {
+    float albedo;
+    float emission;     // of every wall, cd/m^2
+    float intensity_cd; // of a point light in the middle; 0: none
+    float half_edge_m;
+    float turn_rad;
+    uint32_t divisions; // quads along a wall's edge; more than one makes the walls too many
+                        // triangles for planar emitters
+};
+struct scene *gi_box_scene(const struct gi_box_params *params);
+
+// Looks from the middle of the box at one of its walls, in the order of enum voxel_face, which
+// fills a square picture evenly.
+void gi_box_look_at_wall(float turn_rad, uint32_t wall, struct view_camera *out_camera);
+
+// A passage that bends: a lamp stands in one arm, the camera in the other, which it cannot light
+// directly but for the bend.
+struct scene *gi_corridor_scene(void);
+
+// Four coloured walls around a floor with a pillar, open above to an even sky.
+struct scene *gi_courtyard_scene(void);
+
+// A closed room lit by a ball that glows, of too many triangles for a planar emitter.
+struct scene *gi_glowing_ball_scene(void);
+
+// Two closed rooms with a wall between them; a lamp in the first.
+struct gi_rooms_params {
+    float wall_m;   // thickness of the wall
+    float offset_m; // of the wall from the middle
+    float turn_rad; // of everything
+};
+struct scene *gi_rooms_scene(const struct gi_rooms_params *params);
+#define GI_ROOMS_HALF_EXTENT_M 2.0f
+
+// Looks around in a room: 0 is lit, 1 dark.
+void gi_rooms_look(const struct gi_rooms_params *params, uint32_t room,
+                   struct view_camera *out_camera);
+
+// The view of the scene's first camera.
+void gi_scene_camera(const struct scene *scene, struct view_camera *out_camera);
+
+// The longest edge of the scene's bounds.
+double gi_scene_extent(const struct scene *scene);
+
+#endif

@@ -1,0 +1,35 @@
+// What a ray of the reference path tracer finds where it hits a scene.
+//
+// Sides are those of the rasteriser: the front is the side from which the corners run
+// counter-clockwise, mirrored placements included. The back of a single-sided surface is never
+// shown to the camera; whoever follows a ray decides what it is to that ray.
+#ifndef VOXCAST_TESTS_GPU_SUPPORT_PATH_SURFACE_H
+#define VOXCAST_TESTS_GPU_SUPPORT_PATH_SURFACE_H
+
+#include "renderer/scene/ray_scene.h"
+
+struct path_surface {
+    uint32_t material;
+    bool is_back;               // of a single-sided surface: shows and emits nothing
+    bool unlit;                 // `emission` is what the camera sees; lights nothing
+    double position[3];         // world
+    double geometric_normal[3]; // unit, on the ray's side
+    double normal[3];           // interpolated, unit, on the same side
+    double reflectance[3];      // Lambertian
+    double emission[3];         // cd/m^2 towards the ray's origin
+    double passed;              // probability that light passes straight through, as if not there
+    double passed_tint[3];      // colour of what passes
+};
+
+// `direction` is the ray's. Of the hit, node, primitive, triangle, material and barycentric count.
+// False if the triangle has no area. Base colour and emission are those of factors, vertex colours
+// and textures; normal maps and specular reflection are left out: the diffuse part of a
+// dielectric is taken without what its specular layer keeps.
+bool path_surface_init(struct path_surface *surface, const struct scene *scene,
+                       const struct ray_hit *hit, const double direction[3]);
+
+// Corners of a triangle in world space, and its normal (length: twice the area).
+void path_triangle_corners(const struct scene *scene, const struct ray_hit *hit,
+                           double out_corners[3][3], double out_area_normal[3]);
+
+#endif

@@ -1,0 +1,181 @@
+// Proves that indirect light is as much as it should be: means over pictures, by colour, against
+// the reference path tracer, in the Cornell box and in scenes that nobody tunes to.
+//
+// Where only lamps and planar emitters light, indirect light is compared alone: the picture with
+// global illumination minus the one without. Skies and glowing bodies are compared as a whole,
+// since without global illumination their light is not blocked, or not there.
+//
+// A line of relative errors by pixel follows each comparison; it is for reading, not for passing.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "renderer/scene/scene_load.h"
+#include "support_gi.h"
+#include "support_gi_scenes.h"
+
+#define PICTURE_EDGE 64u
+// Final quality averages four pixels; the path tracer looks along the very same rays.
+#define TRACED_EDGE       (2u * PICTURE_EDGE)
+#define SAMPLES           64u
+#define CORNELL_TOLERANCE 0.10
+#define OTHER_TOLERANCE   0.15
+
+enum compared { COMPARE_INDIRECT, COMPARE_TOTAL };
+
+static struct scene *cornell_scene(void)
+{
+    struct error error = {""};
+    struct scene *scene = scene_create_builtin("cornell", &error);
+    assert_non_null(scene);
+    return scene;
+}
+
+static const struct energy_case {
+    const char *name;
+    struct scene *(*create)(void);
+    enum compared compared;
+    uint32_t bounces; // 0: unlimited
+    double tolerance;
+} cases[] = {
+    {"cornell", cornell_scene, COMPARE_INDIRECT, 0, CORNELL_TOLERANCE},
+    {"cornell", cornell_scene, COMPARE_INDIRECT, 1, CORNELL_TOLERANCE},
+    {"corridor", gi_corridor_scene, COMPARE_INDIRECT, 0, OTHER_TOLERANCE},
+    {"corridor", gi_corridor_scene, COMPARE_INDIRECT, 1, OTHER_TOLERANCE},
+    {"courtyard", gi_courtyard_scene, COMPARE_TOTAL, 0, OTHER_TOLERANCE},
+    {"glowing ball", gi_glowing_ball_scene, COMPARE_TOTAL, 0, OTHER_TOLERANCE},
+};
+
+// The reference, averaged down to the picture's size.
+static void trace(const struct scene *scene, const struct energy_case *c,
+                  const struct view_camera *camera, struct test_picture *out_picture)
+{
+    struct path_params params = {
+        .scene = scene,
+        .camera = *camera,
+        .width = TRACED_EDGE,
+        .height = TRACED_EDGE,
+        .samples = SAMPLES,
+        .bounces = c->bounces == 0 ? PATH_BOUNCES_UNLIMITED : c->bounces,
+        .seed = 11,
+        .pixel_center = true,
+    };
+    struct path_picture traced;
+    assert_true(path_trace(&params, &traced));
+    size_t values = (size_t)PICTURE_EDGE * PICTURE_EDGE * 4;
+    *out_picture = (struct test_picture){PICTURE_EDGE, PICTURE_EDGE, calloc(values, sizeof(float))};
+    assert_non_null(out_picture->pixels);
+    for (size_t y = 0; y < TRACED_EDGE; y++)
+        for (size_t x = 0; x < TRACED_EDGE; x++)
+            for (size_t channel = 0; channel < 3; channel++) {
+                size_t from = (y * TRACED_EDGE + x) * 4 + channel;
+                size_t to = (y / 2 * PICTURE_EDGE + x / 2) * 4 + channel;
+                float value = traced.indirect[from];
+                if (c->compared == COMPARE_TOTAL)
+                    value += traced.direct[from] + traced.sky[from];
+                out_picture->pixels[to] += 0.25f * value;
+            }
+    path_picture_finish(&traced);
+}
+
+// Root mean square of the differences over the mean.
+static double relative_error(const struct test_picture *a, const struct test_picture *b)
+{
+    size_t count = (size_t)a->width * a->height;
+    double squared = 0.0, sum = 0.0;
+    for (size_t i = 0; i < 4 * count; i++) {
+        if (i % 4 == 3)
+            continue;
+        double difference = (double)a->pixels[i] - b->pixels[i];
+        squared += difference * difference;
+        sum += b->pixels[i];
+    }
+    return sqrt(squared * 3.0 * (double)count) / sum;
+}
+
+static void check_method(struct gi_report *report, struct scene *scene, const struct energy_case *c,
+                         enum gi_method method, const struct test_picture *none,
+                         const struct test_picture *traced)
+{
+    static const char *const channels[3] = {"red", "green", "blue"};
+    struct frame_params params = gi_params(PICTURE_EDGE, PICTURE_EDGE, method);
+    params.quality = QUALITY_FINAL;
+    params.settings.bounces = c->bounces;
+    gi_scene_camera(scene, &params.camera);
+    struct test_picture shown = gi_draw(scene, &params);
+    size_t values = (size_t)PICTURE_EDGE * PICTURE_EDGE * 4;
+    for (size_t i = 0; i < values && c->compared == COMPARE_INDIRECT; i++)
+        shown.pixels[i] -= none->pixels[i];
+    double measured[3], expected[3];
+    gi_mean(shown.pixels, PICTURE_EDGE, PICTURE_EDGE, measured);
+    gi_mean(traced->pixels, PICTURE_EDGE, PICTURE_EDGE, expected);
+    for (int channel = 0; channel < 3; channel++)
+        gi_check_ratio(report, measured[channel], expected[channel], c->tolerance,
+                       "%s %s, %s light, bounces %u, %s", gi_method_names[method], c->name,
+                       c->compared == COMPARE_TOTAL ? "all" : "indirect", c->bounces,
+                       channels[channel]);
+    print_message("      root mean square error by pixel over the mean: %.3f\n",
+                  relative_error(&shown, traced));
+    gi_picture_finish(&shown);
+}
+
+static void check_cases(const char *name)
+{
+    struct gi_report report = {0};
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        if (strcmp(cases[i].name, name) != 0)
+            continue;
+        struct scene *scene = cases[i].create();
+        struct frame_params params = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_NONE);
+        params.quality = QUALITY_FINAL;
+        gi_scene_camera(scene, &params.camera);
+        struct test_picture none = gi_draw(scene, &params), traced;
+        trace(scene, &cases[i], &params.camera, &traced);
+        for (uint32_t m = 0; m < GI_PROVED_METHODS; m++)
+            check_method(&report, scene, &cases[i], gi_proved_methods[m], &none, &traced);
+        gi_picture_finish(&none);
+        gi_picture_finish(&traced);
+        scene_destroy(&scene);
+    }
+    gi_report_finish(&report);
+}
+
+static void test_cornell_box(void **state)
+{
+    (void)state;
+    check_cases("cornell");
+}
+
+static void test_light_around_a_corner(void **state)
+{
+    (void)state;
+    check_cases("corridor");
+}
+
+static void test_courtyard_under_a_sky(void **state)
+{
+    (void)state;
+    check_cases("courtyard");
+}
+
+static void test_glowing_body(void **state)
+{
+    (void)state;
+    check_cases("glowing ball");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_cornell_box),
+        cmocka_unit_test(test_light_around_a_corner),
+        cmocka_unit_test(test_courtyard_under_a_sky),
+        cmocka_unit_test(test_glowing_body),
+    };
+    return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);
+}

@@ -1,0 +1,298 @@
+// Proves the reference path tracer by closed formulas, and that it and the renderer agree about
+// units, camera and direct light.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "renderer/scene/builtin/builtin.h"
+#include "renderer/scene/scene_load.h"
+#include "support_gi.h"
+#include "support_gi_scenes.h"
+
+enum layer { DIRECT, SKY, INDIRECT, TOTAL };
+
+static struct path_params path_params(const struct scene *scene, uint32_t samples)
+{
+    return (struct path_params){
+        .scene = scene,
+        .camera = {.eye = {0.0f, 0.0f, 3.0f}, .up = {0.0f, 1.0f, 0.0f}, .fov_y_rad = 0.01f},
+        .width = 16,
+        .height = 16,
+        .samples = samples,
+        .bounces = PATH_BOUNCES_UNLIMITED,
+        .seed = 7,
+    };
+}
+
+// Mean of the red channel over the picture.
+static double trace_mean(const struct path_params *params, enum layer layer)
+{
+    struct path_picture picture;
+    assert_true(path_trace(params, &picture));
+    const float *const layers[3] = {picture.direct, picture.sky, picture.indirect};
+    double sum = 0.0;
+    for (int i = 0; i < 3; i++) {
+        double rgb[3];
+        gi_mean(layers[i], picture.width, picture.height, rgb);
+        sum += i == (int)layer || layer == TOTAL ? rgb[0] : 0.0;
+    }
+    path_picture_finish(&picture);
+    return sum;
+}
+
+static void test_punctual_lights_follow_their_formulas(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    struct scene *scene = test_square_scene(1.0f, 0.6f);
+    struct scene_light light;
+    scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
+    light.intensity = 20.0f;
+    scene_add_light(scene, &light, (float[3]){0, 0, 2}, (float[3]){0, 0, -1});
+    struct path_params params = path_params(scene, 1);
+    double expected = 0.6 / M_PI * 20.0 / 4.0;
+    gi_check_ratio(&report, trace_mean(&params, DIRECT), expected, 1e-4, "point light");
+
+    light = scene->lights[0];
+    light.range_m = 3.0f;
+    scene_set_light(scene, 0, &light);
+    gi_check_ratio(&report, trace_mean(&params, DIRECT), expected * (1.0 - pow(2.0 / 3.0, 4.0)),
+                   1e-4, "point light of limited range");
+
+    light.type = SCENE_LIGHT_SPOT;
+    light.range_m = 0.0f;
+    light.inner_cone_rad = 0.3f;
+    light.outer_cone_rad = 0.7f;
+    scene_set_light(scene, 0, &light);
+    scene_set_light_placement(scene, 0, (float[3]){0, 0, 2},
+                              (float[3]){sinf(0.5f), 0, -cosf(0.5f)});
+    double angular = (cos(0.5) - cos(0.7)) / (cos(0.3) - cos(0.7));
+    gi_check_ratio(&report, trace_mean(&params, DIRECT), expected * angular * angular, 1e-3,
+                   "spot at 0.5 rad");
+
+    light.type = SCENE_LIGHT_DIRECTIONAL;
+    light.intensity = 5000.0f;
+    scene_set_light(scene, 0, &light);
+    scene_set_light_placement(scene, 0, (float[3]){0, 0, 2}, (float[3]){sqrtf(0.75f), 0, -0.5f});
+    gi_check_ratio(&report, trace_mean(&params, DIRECT), 0.6 / M_PI * 5000.0 * 0.5, 1e-4,
+                   "sun at 60 degrees");
+    scene_destroy(&scene);
+    gi_report_finish(&report);
+}
+
+// The share of a hemisphere, weighted by cosine, that a polygon takes: Lambert's sum over edges.
+// The whole polygon lies above the receiver's horizon.
+static double form_factor(const double point[3], const double normal[3], const double corners[][3],
+                          int count)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) {
+        double a[3], b[3], cross[3], length_a = 0.0, length_b = 0.0, dot = 0.0, sine = 0.0;
+        for (int axis = 0; axis < 3; axis++) {
+            a[axis] = corners[i][axis] - point[axis];
+            b[axis] = corners[(i + 1) % count][axis] - point[axis];
+            length_a += a[axis] * a[axis];
+            length_b += b[axis] * b[axis];
+            dot += a[axis] * b[axis];
+        }
+        for (int axis = 0; axis < 3; axis++) {
+            int u = (axis + 1) % 3, v = (axis + 2) % 3;
+            cross[axis] = a[u] * b[v] - a[v] * b[u];
+            sine += cross[axis] * cross[axis];
+        }
+        sine = sqrt(sine);
+        double angle = acos(dot / sqrt(length_a * length_b));
+        for (int axis = 0; axis < 3; axis++)
+            sum += angle * cross[axis] / sine * normal[axis] / (2.0 * M_PI);
+    }
+    return fabs(sum);
+}
+
+// A square above another: in the first it emits, in the second it reflects a lamp's light.
+static void test_one_reflection_follows_the_form_factor(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    const double above[4][3] = {
+        {-0.5, -0.5, 1.0}, {-0.5, 0.5, 1.0}, {0.5, 0.5, 1.0}, {0.5, -0.5, 1.0}};
+    float corners[4][3];
+    for (int i = 0; i < 12; i++)
+        corners[i / 3][i % 3] = (float)above[i / 3][i % 3];
+    double share = form_factor((const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, above, 4);
+    for (int emits = 0; emits < 2; emits++) {
+        // The square below is nearly a point: nothing is reflected back and forth.
+        struct scene *scene = test_square_scene(0.01f, 0.5f);
+        uint32_t sheet = builtin_add_matte(scene, "sheet", (const float[3]){0.8f, 0.8f, 0.8f});
+        scene->materials[sheet].emissive[0] = emits ? 1.0f : 0.0f;
+        scene->materials[sheet].emissive_strength = 10.0f;
+        uint32_t mesh = scene_add_mesh(scene, "sheet");
+        assert_true(builtin_add_quad(scene, corners, sheet));
+        assert_int_not_equal(builtin_add_mesh_node(scene, "sheet", mesh), SCENE_NONE);
+        scene_update_world_transforms(scene);
+        if (!emits) {
+            struct scene_light sun;
+            scene_light_init(&sun, SCENE_LIGHT_DIRECTIONAL, "sun");
+            sun.intensity = 100.0f;
+            sun.casts_shadow = false;
+            scene_add_light(scene, &sun, (float[3]){0}, (float[3]){0, 0, 1});
+        }
+        // The camera sees through the sheet's back, or from below it would see nothing at all.
+        struct path_params params = path_params(scene, 2000);
+        params.camera.fov_y_rad = 0.001f;
+        double radiance = emits ? 10.0 : 0.8 / M_PI * 100.0;
+        gi_check_ratio(&report, trace_mean(&params, emits ? DIRECT : INDIRECT),
+                       0.5 * radiance * share, 0.005, emits ? "emitter" : "lit sheet");
+        scene_destroy(&scene);
+    }
+    gi_report_finish(&report);
+}
+
+static void test_furnace_is_a_geometric_series(void **state)
+{
+    (void)state;
+    static const uint32_t bounces[] = {0, 1, 2, 3, PATH_BOUNCES_UNLIMITED};
+    struct gi_report report = {0};
+    for (int i = 0; i < 6; i++) {
+        double albedo = i % 3 == 0 ? 0.2 : i % 3 == 1 ? 0.5 : 0.8;
+        struct scene *scene = gi_box_scene(&(struct gi_box_params){.albedo = (float)albedo,
+                                                                   .emission = 3.0f,
+                                                                   .half_edge_m = 1.3f,
+                                                                   .turn_rad = i < 3 ? 0.0f : 0.4f,
+                                                                   .divisions = i < 3 ? 1 : 5});
+        struct path_params params = path_params(scene, 256);
+        gi_scene_camera(scene, &params.camera);
+        for (size_t j = 0; j < sizeof(bounces) / sizeof(bounces[0]); j++) {
+            params.bounces = bounces[j];
+            bool unlimited = bounces[j] == PATH_BOUNCES_UNLIMITED;
+            double series = 1.0 / (1.0 - albedo);
+            if (!unlimited)
+                series *= 1.0 - pow(albedo, bounces[j] + 2.0);
+            gi_check_ratio(&report, trace_mean(&params, TOTAL), 3.0 * series, 0.01,
+                           "furnace, albedo %g, bounces %d", albedo,
+                           unlimited ? -1 : (int)bounces[j]);
+        }
+        scene_destroy(&scene);
+    }
+    gi_report_finish(&report);
+}
+
+// The flux of a lamp in a closed box is absorbed by its walls: irradiance x area x (1 - albedo).
+static void test_lamp_in_a_box_balances(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    for (int turned = 0; turned < 2; turned++) {
+        struct gi_box_params box = {.albedo = 0.7f,
+                                    .intensity_cd = 12.0f,
+                                    .half_edge_m = 0.9f,
+                                    .turn_rad = turned ? 0.7f : 0.0f,
+                                    .divisions = 1};
+        struct scene *scene = gi_box_scene(&box);
+        double area = 24.0 * 0.9 * 0.9, sum = 0.0;
+        for (uint32_t wall = 0; wall < 6; wall++) {
+            struct path_params params = path_params(scene, 32);
+            gi_box_look_at_wall(box.turn_rad, wall, &params.camera);
+            sum += trace_mean(&params, TOTAL) / 6.0;
+        }
+        gi_check_ratio(&report, sum, 0.7 / M_PI * 4.0 * M_PI * 12.0 / area / (1.0 - 0.7), 0.01,
+                       "lamp in a box, turned %d", turned);
+        scene_destroy(&scene);
+    }
+    gi_report_finish(&report);
+}
+
+// Under an even sky an open floor of albedo a shows a times the sky; a deep well shows less.
+static void test_sky_lights_an_open_floor(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    struct scene *scene = test_square_scene(1.0f, 0.35f);
+    scene->environment = (struct scene_environment){
+        .type = SCENE_ENVIRONMENT_CONSTANT, .intensity = 2.0f, .color = {1.5f, 1.5f, 1.5f}};
+    struct path_params params = path_params(scene, 256);
+    gi_check_ratio(&report, trace_mean(&params, SKY), 0.35 * 3.0, 0.001, "even sky");
+    params.camera.target[0] = 3.0f;
+    gi_check_ratio(&report, trace_mean(&params, DIRECT), 3.0, 1e-4, "background");
+    // A gradient h + (z - h) |y| over a floor that faces +Y: irradiance pi (h + 2 (z - h) / 3).
+    params.camera.target[0] = 0.0f;
+    scene->environment.type = SCENE_ENVIRONMENT_GRADIENT;
+    scene->environment.intensity = 1.0f;
+    scene->environment.color[0] = 4.0f;
+    scene->environment.horizon_color[0] = 1.0f;
+    scene->nodes[0].rotation[0] = -sqrtf(0.5f);
+    scene->nodes[0].rotation[3] = sqrtf(0.5f);
+    scene_update_world_transforms(scene);
+    params.camera = (struct view_camera){
+        .eye = {0.0f, 3.0f, 0.0f}, .up = {0.0f, 0.0f, 1.0f}, .fov_y_rad = 0.01f};
+    gi_check_ratio(&report, trace_mean(&params, SKY), 0.35 * (1.0 + 2.0 / 3.0 * 3.0), 0.005,
+                   "gradient sky");
+    scene_destroy(&scene);
+    gi_report_finish(&report);
+}
+
+// Means over the picture: the renderer takes an emitter's shadow from its centre, which moves
+// light, but on the whole neither adds nor loses much. Both look along the same rays: a lamp is
+// much brighter than what it lights, and few pixels wide.
+static void test_renderer_shows_the_same_direct_light(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    struct error error = {""};
+    struct scene *scenes[2] = {scene_create_builtin("cornell", &error), gi_corridor_scene()};
+    static const char *const names[2] = {"cornell", "corridor"};
+    for (int i = 0; i < 2; i++) {
+        assert_non_null(scenes[i]);
+        struct frame_params frame = gi_params(96, 96, GI_METHOD_NONE);
+        frame.quality = QUALITY_FINAL;
+        gi_scene_camera(scenes[i], &frame.camera);
+        struct test_picture shown = gi_draw(scenes[i], &frame);
+        struct path_params params = path_params(scenes[i], 16);
+        params.camera = frame.camera;
+        params.width = params.height = 2 * 96; // final quality averages four pixels
+        params.pixel_center = true;
+        struct path_picture traced;
+        assert_true(path_trace(&params, &traced));
+        double measured[3], expected[3];
+        gi_mean(shown.pixels, 96, 96, measured);
+        gi_mean(traced.direct, traced.width, traced.height, expected);
+        for (int c = 0; c < 3; c++)
+            gi_check_ratio(&report, measured[c], expected[c], 0.02, "%s, direct light, channel %d",
+                           names[i], c);
+        path_picture_finish(&traced);
+        gi_picture_finish(&shown);
+        scene_destroy(&scenes[i]);
+    }
+    gi_report_finish(&report);
+}
+
+static void test_seed_alone_decides(void **state)
+{
+    (void)state;
+    struct scene *scene = gi_corridor_scene();
+    struct path_params params = path_params(scene, 4);
+    gi_scene_camera(scene, &params.camera);
+    params.threads = 1;
+    double once = trace_mean(&params, TOTAL);
+    params.threads = 3;
+    assert_true(trace_mean(&params, TOTAL) == once);
+    params.seed = 8;
+    assert_true(trace_mean(&params, TOTAL) != once);
+    scene_destroy(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_punctual_lights_follow_their_formulas),
+        cmocka_unit_test(test_one_reflection_follows_the_form_factor),
+        cmocka_unit_test(test_furnace_is_a_geometric_series),
+        cmocka_unit_test(test_lamp_in_a_box_balances),
+        cmocka_unit_test(test_sky_lights_an_open_floor),
+        cmocka_unit_test(test_renderer_shows_the_same_direct_light),
+        cmocka_unit_test(test_seed_alone_decides),
+    };
+    return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);
+}
