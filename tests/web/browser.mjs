@@ -37,10 +37,14 @@ export async function openBrowser(viewport = { width: 1280, height: 800 }) {
   return { page: context.pages()[0], close };
 }
 
-/** Opens the client and waits for its first picture. */
+/**
+ * Opens the client and waits for its first picture, by direct light: pictures with indirect light are not
+ * still for long.
+ */
 export async function openClient(page, daemon) {
   await page.goto(`${daemon.http}/`);
   await page.locator('#stage[data-frame]').waitFor();
+  await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }));
   await untilStill(page);
 }
 

@@ -56,9 +56,8 @@ describe('the tab of rendering', () => {
     );
     await parameter('settings.cone_set').locator('select').selectOption('16\u00a0');
     await setParameter(page, 'settings.bounces', 3);
-    await untilStill(page);
+    await other.until(() => other.notifications.some((n) => n.params?.edits?.[0].set.bounces === 3), 'the edit');
     assert.equal(await setting('cone_set'), '16');
-    assert.equal(await setting('bounces'), 3);
   });
 
   test('what does not belong to the method rests and says why', async () => {
@@ -85,8 +84,9 @@ describe('the tab of rendering', () => {
   test('a refused step is told and taken back', async () => {
     await parameter('settings.gi_method').locator('select').selectOption({ label: 'Grid' });
     await setParameter(page, 'settings.cone_step', 0.1);
-    await page.locator('.toast.error').first().waitFor();
-    assert.match(await page.locator('.toast.error').first().innerText(), /cone_step[\s\S]*0\.25/);
+    const toast = page.locator('.toast.error', { hasText: 'cone_step' });
+    await toast.waitFor();
+    assert.match(await toast.innerText(), /0\.25/);
     assert.equal(await setting('cone_step'), 0);
   });
 
@@ -106,6 +106,7 @@ describe('the tab of rendering', () => {
   });
 
   test('a chosen quality is the one the picture rests at', async () => {
+    await parameter('settings.gi_method').locator('select').selectOption({ label: 'None' });
     await parameter('view.quality').locator('select').selectOption({ label: 'High' });
     await page.waitForFunction(() => /high\s+done/.test(document.getElementById('badge').innerText));
     await parameter('view.adaptive').locator('input').uncheck();

@@ -13,6 +13,8 @@ const TICKS_PER_SECOND = 100;
 async function hello(daemon, view = {}) {
   const client = await Client.open(daemon.url);
   client.hello = (await client.call('session.hello', {})).result;
+  // Direct light is done in one frame of the wanted row.
+  await client.call('settings.update', { set: { gi_method: 'none' } });
   await client.call('view.configure', { width: 160, height: 90, ...view });
   return client;
 }
