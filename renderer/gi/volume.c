@@ -39,9 +39,10 @@ static bool create_pools(struct voxel_volume *volume)
     size_t cells = volume->cell_capacity, surfels = volume->surfel_capacity;
     // Bits that tell which voxels of the mip levels are occupied.
     size_t bits = 0;
-    for (uint32_t i = 1; i < volume->level_count; i++)
+    for (uint32_t i = volume->lit_levels; i < volume->level_count; i++)
         bits += (size_t)1 << (3 * log2_of(volume->levels[i].edge));
-    volume->list_words = VOXEL_MAX_LEVELS * cells + (volume->lit_levels == 1 ? bits / 32 + 1 : 0);
+    volume->mip_words = bits / 32 + 1;
+    volume->list_words = volume->level_count * cells + volume->mip_words;
     volume->cells = make(volume, "gi.cells", cells * CELL_WORDS);
     volume->surfels = make(volume, "gi.surfels", surfels * SURFEL_WORDS);
     volume->free_list = make(volume, "gi.free", cells + 2 * surfels);
@@ -53,11 +54,10 @@ static bool create_pools(struct voxel_volume *volume)
 static struct gpu_texture *create_texture(const struct voxel_volume *volume)
 {
     uint32_t outer = volume->params.edge + 2;
-    bool clipmap = volume->params.method == GI_METHOD_CLIPMAP;
-    uint32_t height = clipmap ? outer * volume->level_count : outer + outer / 2 + 2;
-    // Mip levels lie side by side: their widths add up to less than the finest level's but for
-    // borders.
-    uint32_t width = volume->face_count * (outer + (clipmap ? 0 : 2 * volume->level_count));
+    uint32_t mips = volume->level_count - volume->lit_levels;
+    uint32_t height = outer * volume->lit_levels + outer / 2 + 1;
+    // Mip levels lie side by side: their widths add up to less than the others' but for borders.
+    uint32_t width = volume->face_count * (outer + 2 * mips);
     return gpu_texture_create(volume->gpu, &(struct gpu_texture_params){
                                                .label = "gi.radiance",
                                                .format = GPU_FORMAT_RGBA16F,
@@ -170,24 +170,24 @@ static bool lay_out(struct voxel_volume *volume, const struct resident *resident
     if (!(extent > 0.0f) || !isfinite(extent))
         extent = 1.0f;
     uint32_t edge = volume->params.edge;
-    uint32_t levels = clipmap ? choose_levels(volume, resident, extent) : log2_of(edge) - 1;
-    bool same = volume->radiance && levels == volume->level_count;
+    uint32_t lit_levels = clipmap ? choose_levels(volume, resident, extent) : 1;
+    bool same = volume->radiance && lit_levels == volume->lit_levels;
+    // Mips down to 8^3: no cone sees the scene more coarsely.
+    uint32_t levels = lit_levels + log2_of(edge) - 5;
     volume->level_count = levels;
-    volume->lit_levels = clipmap ? levels : 1;
-    uint32_t doublings = clipmap ? levels - 1 : 0;
+    volume->lit_levels = lit_levels;
+    uint32_t doublings = lit_levels - 1;
     double coarse = extent / ((double)edge - MARGIN_VOXELS);
     // Exact powers of two apart, and exact as floats, so that shaders see the same voxels.
     double fine = (double)(float)ldexp(coarse, -(int)doublings);
     for (uint32_t i = 0; i < levels; i++) {
-        volume->levels[i].edge = clipmap ? edge : edge >> i;
+        volume->levels[i].edge = i < lit_levels ? edge : edge >> (i - doublings);
         volume->levels[i].voxel_edge_m = ldexp(fine, (int)i);
     }
     double middle_offset = ANCHOR_OFFSET * ldexp(fine, (int)doublings);
     for (int axis = 0; axis < 3; axis++) {
         double middle = 0.5 * ((double)volume->bounds_min[axis] + volume->bounds_max[axis]);
-        // Voxels of a grid count from its corner, since they do not wrap.
-        double corner = clipmap ? 0.0 : 0.5 * (double)edge * fine;
-        volume->anchor[axis] = (double)(float)(middle + middle_offset - corner);
+        volume->anchor[axis] = (double)(float)(middle + middle_offset);
     }
     if (!same) {
         destroy_storage(volume);
@@ -221,6 +221,11 @@ static void place_level(const struct voxel_volume *volume, uint32_t number, cons
     const struct voxel_level *level = &volume->levels[number];
     int32_t edge = (int32_t)level->edge;
     for (int axis = 0; axis < 3; axis++) {
+        if (number >= volume->lit_levels) { // a mip of the level before
+            out_box->low[axis] = volume->levels[number - 1].box.low[axis] / 2;
+            out_box->high[axis] = out_box->low[axis] + edge;
+            continue;
+        }
         double center = eye[axis];
         double half = 0.5 * (edge - MARGIN_VOXELS) * level->voxel_edge_m;
         double low = volume->bounds_min[axis] + half, high = volume->bounds_max[axis] - half;
@@ -229,8 +234,9 @@ static void place_level(const struct voxel_volume *volume, uint32_t number, cons
         center = fmin(fmax(center, low), high);
         double voxel = (center - volume->anchor[axis]) / level->voxel_edge_m;
         int32_t snapped = SNAP_VOXELS * (int32_t)floor(voxel / SNAP_VOXELS + 0.5);
-        if (volume->params.method == GI_METHOD_GRID)
-            snapped = edge / 2;
+        // The coarsest level covers the scene and stays where it is.
+        if (number + 1 == volume->lit_levels)
+            snapped = 0;
         out_box->low[axis] = snapped - edge / 2;
         out_box->high[axis] = snapped + edge / 2;
     }
@@ -376,6 +382,7 @@ static void fill_levels(const struct voxel_volume *volume, struct voxel_block *b
         const struct voxel_level *level = &volume->levels[i];
         struct voxel_level_block *target = &block->levels[i];
         int32_t edge = (int32_t)level->edge;
+        bool mip = i >= volume->lit_levels;
         for (int axis = 0; axis < 3; axis++) {
             target->origin[axis] = level->box.low[axis];
             target->inner[axis] = level->inner.low[axis];
@@ -383,18 +390,16 @@ static void fill_levels(const struct voxel_volume *volume, struct voxel_block *b
         }
         target->origin[3] = edge;
         target->inner[3] = level->inner.high[0] - level->inner.low[0];
-        if (clipmap) {
-            target->texels[1] += outer * (int32_t)i;
-        } else if (i > 0) {
+        target->texels[1] += outer * (int32_t)(mip ? volume->lit_levels : i);
+        if (mip) {
             target->texels[0] += mip_x;
-            target->texels[1] += outer;
             mip_x += (int32_t)volume->face_count * (edge + 2);
         }
         target->texels[3] = volume->face_count > 1 ? edge + 2 : 0;
         uint32_t log2 = log2_of(level->edge);
-        target->index[0] = clipmap ? i << (3 * log2) : 0;
+        target->index[0] = mip ? 0 : i << (3 * log2);
         target->index[1] = log2;
-        target->index[2] = clipmap;
+        target->index[2] = clipmap && !mip;
         target->size[0] = (float)level->voxel_edge_m;
         target->size[1] = (float)(1.0 / level->voxel_edge_m);
     }
@@ -415,6 +420,7 @@ void voxel_volume_bind(struct voxel_volume *volume)
            (uvec4){volume->region_count, volume->region_voxels, volume->chunk_count,
                    volume->tile_capacity},
            sizeof(uvec4));
+    block->shape[0] = volume->lit_levels;
     block->options[0] = volume->cell_capacity;
     block->options[3] = volume->instance_count;
     fill_levels(volume, block);

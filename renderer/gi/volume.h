@@ -56,7 +56,7 @@ struct voxel_volume {
     struct gpu *gpu;
     struct voxel_volume_params params;
     uint32_t level_count;
-    uint32_t lit_levels; // levels that have cells of their own: 1 for a grid
+    uint32_t lit_levels; // levels that have cells of their own: 1 for a grid; then come mips of the last
     uint32_t face_count;
     double anchor[3];
     float bounds_min[3]; // of the scene that the voxels were laid out for
@@ -81,6 +81,7 @@ struct voxel_volume {
     uint32_t chunk_capacity;
     uint32_t cell_count; // cells up to the highest in use
     size_t list_words;
+    size_t mip_words; // of those, at the end: bits that tell which voxels of mips are occupied
 
     // What must be voxelized next.
     bool laid_out;

@@ -29,7 +29,6 @@ struct voxelize_programs {
 static bool get_programs(const struct frame *frame, const struct pass *pass,
                          struct voxelize_programs *programs, struct error *out_error)
 {
-    bool mips = frame->volume->params.method == GI_METHOD_GRID;
     const struct {
         const struct gpu_program **program;
         const char *shader, *extra;
@@ -40,7 +39,7 @@ static bool get_programs(const struct frame *frame, const struct pass *pass,
         {&programs->cells, "voxel/voxel_cells.comp", ""},
         {&programs->mend, "voxel/voxel_lists.comp", "STAGE 0\n"},
         {&programs->list, "voxel/voxel_lists.comp",
-         mips ? "STAGE 1\nMIPS 1\n" : "STAGE 1\nMIPS 0\n"},
+         "STAGE 1\n"},
         {&programs->arguments, "voxel/voxel_lists.comp", "STAGE 2\n"},
         {&programs->tiles, "voxel/voxel_lists.comp", "STAGE 3\n"},
     };
@@ -85,9 +84,8 @@ static void list_cells(const struct frame *frame, const struct voxelize_programs
                   (volume->region_voxels + LINEAR_GROUP - 1) / LINEAR_GROUP);
     gpu_dispatch(frame->gpu, programs->mend, 1, 1, 1);
     gpu_barrier(frame->gpu);
-    size_t bits = VOXEL_MAX_LEVELS * (size_t)volume->cell_capacity;
-    if (volume->list_words > bits)
-        gpu_buffer_fill(volume->lists, bits * 4, (volume->list_words - bits) * 4, 0);
+    size_t first = volume->list_words - volume->mip_words;
+    gpu_buffer_fill(volume->lists, first * 4, volume->mip_words * 4, 0);
 }
 
 static bool voxelize_run(struct frame *frame, const struct pass *pass, struct error *out_error)

@@ -84,7 +84,7 @@ vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_l
     if (level > last)
         return vec4(0.0);
     // Where a clip level ends, the next one fades in.
-    if (voxels.levels[level].index.z != 0u && level < last)
+    if (level + 1u < voxels.shape.x)
         blend = max(blend, 1.0 - room * 0.25);
 #if CONE_SMOOTH
     vec4 fine = sample_level(level, position, direction) * voxels.levels[level].size.y;
@@ -106,8 +106,9 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     float passed = 1.0;
     float t = 0.0;
     float voxel = voxels.levels[0].size.x;
+    float longest = voxels.levels[voxels.counts.x - 1u].size.x;
     for (uint i = 0u; i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE; i++) {
-        float length_m = c.step * max(voxel, 2.0 * c.tangent * t);
+        float length_m = min(c.step * max(voxel, 2.0 * c.tangent * t), longest);
         float middle = t + 0.5 * length_m;
         uint level;
         // Never narrower than the step, so that nothing falls between two samples.

@@ -7,9 +7,7 @@ void request_faces(vec3 world, vec3 normal, uint frame_number)
     vec3 position = world - voxels.anchor.xyz;
     float room;
     uint level = cache_level(position, room);
-    for (uint i = 0u; i < 2u && level + i < voxels.counts.x; i++) {
-        if (voxels.levels[level].index.z == 0u && i > 0u)
-            return;
+    for (uint i = 0u; i < 2u && level + i < voxels.shape.x; i++) {
         vec3 at = position * voxels.levels[level + i].size.y - 0.5;
         ivec3 low = ivec3(floor(at));
         uint face = dominant_face(normal);

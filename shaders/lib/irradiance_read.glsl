@@ -13,7 +13,7 @@ uint cache_level(vec3 position, out float out_room)
 {
     uint level = 0u;
     out_room = 0.0;
-    while (level < voxels.counts.x && (level == 0u || voxels.levels[level].index.z != 0u)) {
+    while (level < voxels.shape.x) {
         ivec4 origin = voxels.levels[level].origin;
         vec3 at = position * voxels.levels[level].size.y - vec3(origin.xyz);
         vec3 rim = min(at, float(origin.w) - at);
@@ -22,7 +22,7 @@ uint cache_level(vec3 position, out float out_room)
             return level;
         level++;
     }
-    return voxels.counts.x;
+    return voxels.shape.x;
 }
 
 // Irradiance / pi / scale and openness, of weight a: trilinear between the faces of the eight voxels
@@ -74,13 +74,13 @@ vec4 cached_irradiance(vec3 world, vec3 normal)
     vec3 position = world - voxels.anchor.xyz;
     float room;
     uint level = cache_level(position, room);
-    if (level >= voxels.counts.x)
+    if (level >= voxels.shape.x)
         return vec4(0.0);
     vec4 sum = vec4(0.0);
     float weight = 0.0;
 #if CLIP_LEVELS
     // Over its last voxels a level fades into the next.
-    float own = level + 1u < voxels.counts.x ? clamp(room * 0.25, 0.0, 1.0) : 1.0;
+    float own = level + 1u < voxels.shape.x ? clamp(room * 0.25, 0.0, 1.0) : 1.0;
     uint levels = own < 1.0 ? 2u : 1u;
     for (uint i = 0u; i < levels; i++) {
         vec4 part = vec4(0.0);

@@ -10,7 +10,9 @@ layout(std140, binding = BIND_VOXELS) uniform voxel_uniforms
 
 uint voxel_slot(uint level, ivec3 voxel)
 {
-    ivec3 at = voxel & (voxels.levels[level].origin.w - 1);
+    ivec4 origin = voxels.levels[level].origin;
+    ivec3 start = voxels.levels[level].index.z != 0u ? ivec3(0) : origin.xyz;
+    ivec3 at = (voxel - start) & (origin.w - 1);
     uint shift = voxels.levels[level].index.y;
     return uint(at.x) | (uint(at.y) << shift) | (uint(at.z) << (2u * shift));
 }
@@ -27,6 +29,8 @@ ivec3 slot_voxel(uint level, uint slot)
 {
     ivec4 origin = voxels.levels[level].origin;
     ivec3 at = slot_address(level, slot);
+    if (voxels.levels[level].index.z == 0u)
+        return origin.xyz + at;
     return origin.xyz + ((at - origin.xyz) & (origin.w - 1));
 }
 

@@ -37,9 +37,9 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
     return true;
 }
 
-// Over x and y, since one dimension may hold 65535 groups only.
+// Groups of LINEAR_GROUP over x and y, since one dimension may hold 65535 groups only.
 uint region_invocation()
 {
-    return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) +
+    return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * uint(LINEAR_GROUP)) +
            gl_GlobalInvocationID.x;
 }

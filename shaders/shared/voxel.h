@@ -5,7 +5,7 @@
 
 #include "shared/types.h"
 
-#define VOXEL_MAX_LEVELS 8
+#define VOXEL_MAX_LEVELS 12
 #define VOXEL_MAX_CONES  32
 #define VOXEL_FACES      6
 
@@ -77,7 +77,7 @@
 // Triangles that span more columns of voxels are cut into tiles of so many columns.
 #define VOXEL_SMALL_COLUMNS 12
 #define VOXEL_TILE_EDGE     8
-#define VOXEL_MAX_REGIONS   64
+#define VOXEL_MAX_REGIONS   96
 #define VOXEL_CHUNK         64 // triangles
 
 #define SURFACE_MATERIAL_MASK 0x0fffffffu
@@ -106,6 +106,7 @@ struct voxel_block {
     vec4 march;   // of the cache's cones: step over diameter, start offset in voxels, their number,
                   // tangent of the half-angle
     vec4 pixel_march; // of the cones that start at pixels, likewise
+    uvec4 shape;   // levels that have cells of their own: those beyond are mips of the last; unused
     uvec4 options; // capacity of lists; first level to light, or the one to filter; end of those;
                    // instances
     vec4 cones[VOXEL_MAX_CONES]; // direction about +Z; w: weight, cosine over the sum of cosines
@@ -116,7 +117,7 @@ struct voxel_block {
 #ifdef __STDC__
 static_assert(sizeof(struct voxel_level_block) == 5 * sizeof(vec4), "no padding");
 static_assert(sizeof(struct voxel_block) ==
-                  (8 + 2 * VOXEL_MAX_CONES + 5 * VOXEL_MAX_LEVELS) * sizeof(vec4),
+                  (9 + 2 * VOXEL_MAX_CONES + 5 * VOXEL_MAX_LEVELS) * sizeof(vec4),
               "no padding");
 #endif
 

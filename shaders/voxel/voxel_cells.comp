@@ -34,7 +34,7 @@ void main()
     if (cell == VOXEL_NONE)
         return;
     uint parent = VOXEL_NONE;
-    if (level + 1u < voxels.counts.x && voxels.levels[level + 1u].index.z != 0u &&
+    if (level + 1u < voxels.shape.x &&
         voxel_in_level(level + 1u, voxel >> 1)) {
         uint word = voxel_index[voxels.levels[level + 1u].index.x + voxel_slot(level + 1u, voxel >> 1)];
         if ((word & VOXEL_TAG_SURFEL) == 0u)

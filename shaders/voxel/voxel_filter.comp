@@ -124,6 +124,7 @@ void main()
         store_voxel_face(LEVEL, address, face, filtered_face(corner, face));
 #endif
 #if CLIP_LEVELS
-    inherit_irradiance(slot, corner);
+    if (LEVEL < voxels.shape.x)
+        inherit_irradiance(slot, corner);
 #endif
 }

@@ -1,6 +1,6 @@
 // Lists what later passes work on. STAGE 0: mends the free lists' lengths and empties the lists.
 // STAGE 1: enters each cell into the list of those that are lit, or of those that take their light
-// from the finer level; without clip levels, enters the occupied voxels of the mip levels. STAGE 2:
+// from the finer level; enters the occupied voxels of the mip levels below. STAGE 2:
 // turns the lists' lengths into arguments of indirect dispatches. STAGE 3: likewise for the tiles of
 // large triangles.
 #include "lib/voxel_work.glsl"
@@ -57,18 +57,19 @@ void main()
     bool filtered = all(greaterThanEqual(inside, ivec3(0))) &&
                     all(lessThan(inside, ivec3(voxels.levels[level].inner.w)));
     append(filtered ? level : LIST_LIT, filtered ? slot : cell);
-#if MIPS
-    uint bits = uint(VOXEL_MAX_LEVELS) * voxels.options.x;
+    uint base = voxels.shape.x - 1u;
+    if (level != base)
+        return;
+    uint bits = voxels.counts.x * voxels.options.x;
     uint first_bit = 0u;
-    for (uint mip = 1u; mip < voxels.counts.x; mip++) {
-        uint coarse = voxel_slot(mip, voxel >> int(mip));
+    for (uint mip = base + 1u; mip < voxels.counts.x; mip++) {
+        uint coarse = voxel_slot(mip, voxel >> int(mip - base));
         uint number = first_bit + coarse;
         uint bit = 1u << (number & 31u);
         if ((atomicOr(list_words[bits + (number >> 5)], bit) & bit) == 0u)
             append(mip, coarse);
         first_bit += 1u << (3u * voxels.levels[mip].index.y);
     }
-#endif
 }
 #elif STAGE == 3
 void main()
