@@ -101,6 +101,25 @@ describe('quality', () => {
     await client.close();
   });
 
+  test('draws indirect light until it has converged, then rests', async () => {
+    const client = await hello(daemon, { width: 64, height: 36, quality: 'interactive' });
+    await converged(client, INTERACTIVE);
+    const first = client.frames.length;
+    await client.call('settings.update', { set: { gi_method: 'grid' } });
+    await client.until(() => client.frames.length > first + 3, 'several frames of one state');
+    const asked = Date.now();
+    await client.call('view.configure', {});
+    assert.ok(Date.now() - asked < 2000, 'a command does not wait for the picture');
+    await client.untilStill(1500);
+    const frames = client.frames.slice(first);
+    assert.ok(frames.at(-1).convergence > 0.9, `the last frame is ${frames.at(-1).convergence} on its way`);
+    assert.ok(frames[0].convergence < frames.at(-1).convergence);
+    const used = processorSeconds(daemon);
+    await sleep(1000);
+    assert.ok(processorSeconds(daemon) - used < 0.05, 'the daemon rests');
+    await client.close();
+  });
+
   test('a client that moves does not starve one that is still', async () => {
     const mover = await hello(daemon);
     let isMoving = true;
