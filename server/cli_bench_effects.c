@@ -12,7 +12,7 @@
 #define DEFAULT_FRAMES      30
 #define MAX_FRAMES          10000u
 #define WARM_UP_FRAMES      3
-#define MAX_CONVERGE_FRAMES 200u
+#define MAX_CONVERGE_FRAMES 50u
 
 static const char usage[] =
     "usage: voxcast bench effects [SCENE|builtin:NAME]... [OPTIONS]\n"

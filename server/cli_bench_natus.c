@@ -9,12 +9,12 @@
 
 #include "server/cli_bench.h"
 
-#define DEFAULT_FRAMES      30
-#define MAX_FRAMES          10000u
-#define WARM_UP_FRAMES      3
-#define MAX_CONVERGE_FRAMES 200u
-#define MAX_ROWS            32u
-#define COLUMN_WIDTH        10
+#define DEFAULT_FRAMES  30
+#define MAX_FRAMES      10000u
+#define WARM_UP_FRAMES  3
+#define CONVERGE_FRAMES 100
+#define MAX_ROWS        32u
+#define COLUMN_WIDTH    10
 
 static const char usage[] =
     "usage: voxcast bench natus [OPTIONS]\n"
@@ -31,13 +31,14 @@ static const char usage[] =
     "  --size WxH      1x1 to 3840x2160 (default 1024x768)\n"
     "  --voxels N      only this resolution: 64, 128 or 256\n"
     "  --frames N      frames measured in each row, 1 to 10000 (default 30)\n"
+    "  --converge N    frames drawn before, unless it has converged, 0 to 10000 (default 100)\n"
     "  --json          JSON on stdout; the table goes to stderr\n"
     "  --gpu WHICH     auto, software or a device index (default auto)\n";
 
 struct natus_options {
     char scene[1024], emissive_scene[1024 + 16];
     const char *gpu;
-    uint32_t width, height, frames;
+    uint32_t width, height, frames, converge_frames;
     enum voxel_resolution voxels; // auto: all
     bool json;
 };
@@ -86,7 +87,7 @@ static void take_row(struct natus *natus, const struct scene *scene, const struc
                                        .output = FRAME_OUTPUT_YCBCR},
                             .frames = natus->options->frames,
                             .warm_up_frames = WARM_UP_FRAMES,
-                            .max_converge_frames = MAX_CONVERGE_FRAMES};
+                            .max_converge_frames = natus->options->converge_frames};
     struct render_settings *settings = &run.params.settings;
     render_settings_init(settings);
     settings->gi_method = test->method;
@@ -247,13 +248,20 @@ static bool parse_voxels(const char *text, enum voxel_resolution *out_voxels)
 static bool parse_options(int argc, char **argv, struct natus_options *options, bool *out_help,
                           struct error *out_error)
 {
-    static const struct option long_options[] = {
-        {"scene", required_argument, NULL, 'i'},  {"size", required_argument, NULL, 's'},
-        {"voxels", required_argument, NULL, 'v'}, {"frames", required_argument, NULL, 'n'},
-        {"json", no_argument, NULL, 'j'},         {"gpu", required_argument, NULL, 'G'},
-        {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0}};
-    *options = (struct natus_options){
-        .gpu = "auto", .width = 1024, .height = 768, .frames = DEFAULT_FRAMES};
+    static const struct option long_options[] = {{"scene", required_argument, NULL, 'i'},
+                                                 {"size", required_argument, NULL, 's'},
+                                                 {"voxels", required_argument, NULL, 'v'},
+                                                 {"frames", required_argument, NULL, 'n'},
+                                                 {"json", no_argument, NULL, 'j'},
+                                                 {"converge", required_argument, NULL, 'k'},
+                                                 {"gpu", required_argument, NULL, 'G'},
+                                                 {"help", no_argument, NULL, 'h'},
+                                                 {NULL, 0, NULL, 0}};
+    *options = (struct natus_options){.gpu = "auto",
+                                      .width = 1024,
+                                      .height = 768,
+                                      .frames = DEFAULT_FRAMES,
+                                      .converge_frames = CONVERGE_FRAMES};
     *out_help = false;
     const char *scene = NULL;
     opterr = 0;
@@ -274,6 +282,9 @@ static bool parse_options(int argc, char **argv, struct natus_options *options, 
             return error_set(out_error, "--voxels is \"%s\"; allowed: 64, 128, 256", optarg);
         if (option == 'n' && !bench_parse_count(optarg, 1, MAX_FRAMES, &options->frames))
             return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %u", optarg, MAX_FRAMES);
+        if (option == 'k' && !bench_parse_count(optarg, 0, MAX_FRAMES, &options->converge_frames))
+            return error_set(out_error, "--converge is \"%s\"; allowed: 0 to %u", optarg,
+                             MAX_FRAMES);
         options->json = options->json || option == 'j';
         if (option == 'G')
             options->gpu = optarg;

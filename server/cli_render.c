@@ -55,15 +55,17 @@ struct render_options {
     const char *gi, *view;
 };
 
-static bool parse_vector(const char *text, float out_vector[3])
+static bool take_vector(const char *option, const char *text, float out_vector[3],
+                        struct error *out_error)
 {
     float v[3];
     char extra;
-    if (sscanf(text, "%f,%f,%f%c", &v[0], &v[1], &v[2], &extra) != 3)
-        return false;
-    for (int i = 0; i < 3; i++)
-        if (!isfinite(v[i]))
-            return false;
+    bool fine = sscanf(text, "%f,%f,%f%c", &v[0], &v[1], &v[2], &extra) == 3;
+    for (int i = 0; i < 3 && fine; i++)
+        fine = isfinite(v[i]);
+    if (!fine)
+        return error_set(out_error, "%s is \"%s\"; three finite numbers X,Y,Z are needed", option,
+                         text);
     memcpy(out_vector, v, sizeof(v));
     return true;
 }
@@ -104,23 +106,16 @@ static bool take_option(struct render_options *options, int option, const char *
         return true;
     case 'e':
         options->has_eye = true;
-        return parse_vector(value, options->eye) ||
-               error_set(out_error, "--eye is \"%s\"; three finite numbers X,Y,Z are needed",
-                         value);
+        return take_vector("--eye", value, options->eye, out_error);
     case 't':
         options->has_target = true;
-        return parse_vector(value, options->target) ||
-               error_set(out_error, "--target is \"%s\"; three finite numbers X,Y,Z are needed",
-                         value);
+        return take_vector("--target", value, options->target, out_error);
     case 'u':
         options->has_up = true;
-        return parse_vector(value, options->up) ||
-               error_set(out_error, "--up is \"%s\"; three finite numbers X,Y,Z are needed", value);
+        return take_vector("--up", value, options->up, out_error);
     case 'm':
         options->has_move = true;
-        return parse_vector(value, options->move) ||
-               error_set(out_error, "--move-eye is \"%s\"; three finite numbers X,Y,Z are needed",
-                         value);
+        return take_vector("--move-eye", value, options->move, out_error);
     case 'f':
         if (!parse_number(value, 0.1, 179.0, &number))
             return error_set(out_error, "--fov-y-deg is \"%s\"; allowed: 0.1 to 179", value);

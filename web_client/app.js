@@ -3,6 +3,7 @@ import { add, length, subtract } from './math/vector.js';
 import { Connection } from './net/connection.js';
 import { LightTab } from './panel/light_tab.js';
 import { MaterialTab } from './panel/material_tab.js';
+import { RenderTab } from './panel/render_tab.js';
 import { SceneTab } from './panel/scene_tab.js';
 import { StatsTab } from './panel/stats_tab.js';
 import { ViewTab } from './panel/view_tab.js';
@@ -11,6 +12,7 @@ import { Editor } from './scene/editor.js';
 import { SceneDocument } from './scene/scene_document.js';
 import { Selection } from './scene/selection.js';
 import { DarkHint } from './ui/dark_hint.js';
+import { PictureBadge } from './ui/picture_badge.js';
 import { bindTabs } from './ui/tabs.js';
 import { Toasts } from './ui/toasts.js';
 import { TokenDialog } from './ui/token_dialog.js';
@@ -59,8 +61,10 @@ export class App {
     this.scene = new SceneTab(byId('panel-scene'), this);
     this.light = new LightTab(byId('panel-light'), this);
     this.material = new MaterialTab(byId('panel-material'), this);
+    this.renderTab = new RenderTab(byId('panel-render'), this);
     this.viewTab = new ViewTab(byId('panel-view'), this);
     this.stats = new StatsTab(byId('panel-stats'), this);
+    this.badge = new PictureBadge(byId('badge'));
     this.darkHint = new DarkHint(byId('dark-hint'), this);
   }
 
@@ -130,11 +134,16 @@ export class App {
     connection.addEventListener('frame', (event) => this.picture.show(/** @type {CustomEvent} */ (event).detail));
     connection.addEventListener('notification', (event) => {
       const { method, params } = /** @type {CustomEvent} */ (event).detail;
-      if (method === 'stats') this.stats.takeStats(params);
+      if (method === 'stats') this.#takeStats(params);
       else if (method === 'scene.changed') this.#applyEdits(params);
       else if (method === 'scene.loaded') this.#sceneLoaded(params);
       else if (method === 'session.notice') this.toasts.show(params.level, params.message);
     });
+  }
+
+  #takeStats(/** @type {any} */ params) {
+    this.stats.takeStats(params);
+    this.renderTab.takeStats(params);
   }
 
   #showState() {
@@ -217,6 +226,7 @@ export class App {
     this.scene.rebuild();
     this.light.rebuild();
     this.material.rebuild();
+    this.renderTab.rebuild();
     this.#drawOverlay();
   }
 
@@ -225,6 +235,7 @@ export class App {
     else if (group === 'animation') this.scene.animations.refresh(id);
     else if (group === 'material') this.material.refresh(id);
     else this.light.refresh(group, id);
+    if (group === 'settings') this.renderTab.refresh();
     if (group !== 'animation' && group !== 'settings') this.#drawOverlay();
   }
 
@@ -257,6 +268,7 @@ export class App {
     this.view.addEventListener('changed', () => {
       byId('tool-fly').setAttribute('aria-pressed', String(this.view.mode === 'fly'));
       this.viewTab.refresh();
+      this.renderTab.refresh();
     });
     new ResizeObserver(() => this.overlay.draw()).observe(byId('stage'));
     setInterval(() => {
@@ -269,6 +281,9 @@ export class App {
     this.#acknowledge(header);
     byId('waiting').hidden = true;
     byId('stage').dataset.frame = String(header.frameId);
+    byId('stage').dataset.converged = String(header.converged);
+    const rows = this.parameters('view').find((/** @type {any} */ row) => row.name === 'quality')?.values;
+    this.badge.show(header, rows?.[header.quality] ?? '');
     this.overlay.pose = this.sender.poseOf(header.cameraRevision);
     this.overlay.aspect = header.width / header.height;
     this.overlay.draw();

@@ -37,22 +37,26 @@ export async function openBrowser(viewport = { width: 1280, height: 800 }) {
   return { page: context.pages()[0], close };
 }
 
-/** Opens the client and waits for its first picture. */
+/**
+ * Opens the client and waits for its first picture, by direct light: pictures with indirect light are not
+ * still for long.
+ */
 export async function openClient(page, daemon) {
   await page.goto(`${daemon.http}/`);
   await page.locator('#stage[data-frame]').waitFor();
+  await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }));
   await untilStill(page);
 }
 
-/** Waits until this page's edits are shown and the picture has not changed for `ms`. */
+/** Waits until this page's edits are shown and the picture is done and has not changed for `ms`. */
 export async function untilStill(page, ms = 500) {
   await page.waitForFunction(() => globalThis.voxcast.timer.waiting.size === 0);
-  const frame = () => page.locator('#stage').getAttribute('data-frame');
+  const state = () => page.locator('#stage').evaluate(({ dataset }) => [dataset.frame, dataset.converged].join());
   let last;
   do {
-    last = await frame();
+    last = await state();
     await page.waitForTimeout(ms);
-  } while (last !== (await frame()));
+  } while (last !== (await state()) || !last.endsWith('true'));
 }
 
 /** The mean colour (0 to 255) of a part of the picture; the part is in shares of its size. */

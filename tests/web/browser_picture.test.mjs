@@ -117,7 +117,7 @@ describe('the picture', () => {
       await page.setViewportSize({ width, height });
       await untilStill(page);
       await page.evaluate(axe);
-      for (const name of ['scene', 'light', 'material', 'view', 'stats']) {
+      for (const name of ['scene', 'light', 'material', 'render', 'view', 'stats']) {
         await page.locator(`#tab-${name}`).click();
         await page.waitForTimeout(600);
         const { violations } = await page.evaluate(() => globalThis.axe.run());

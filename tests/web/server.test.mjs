@@ -144,6 +144,7 @@ describe('one daemon', () => {
       client.notify('camera.set', { eye: [i / 100, 1, 3.5], target: [0, 1, 0], revision: i + 1 });
       await sleep(25);
     }
+    await client.until(() => client.frames.length >= 2, 'two frames');
     await sleep(500);
     assert.equal(client.frames.length, 2);
     client.acknowledge = true;

@@ -13,6 +13,8 @@ const TICKS_PER_SECOND = 100;
 async function hello(daemon, view = {}) {
   const client = await Client.open(daemon.url);
   client.hello = (await client.call('session.hello', {})).result;
+  // Direct light is done in one frame of the wanted row.
+  await client.call('settings.update', { set: { gi_method: 'none' } });
   await client.call('view.configure', { width: 160, height: 90, ...view });
   return client;
 }
@@ -96,6 +98,25 @@ describe('quality', () => {
     for (let i = 0; i < 20 && client.frames.at(-1).quality !== DRAFT; i++) await move(client, 5, 40);
     assert.ok(client.frames.slice(first).some((f) => f.quality === DRAFT));
     await converged(client, FINAL);
+    await client.close();
+  });
+
+  test('draws indirect light until it has converged, then rests', async () => {
+    const client = await hello(daemon, { width: 64, height: 36, quality: 'interactive' });
+    await converged(client, INTERACTIVE);
+    const first = client.frames.length;
+    await client.call('settings.update', { set: { gi_method: 'grid' } });
+    await client.until(() => client.frames.length > first + 3, 'several frames of one state');
+    const asked = Date.now();
+    await client.call('view.configure', {});
+    assert.ok(Date.now() - asked < 2000, 'a command does not wait for the picture');
+    await client.untilStill(1500);
+    const frames = client.frames.slice(first);
+    assert.ok(frames.at(-1).convergence > 0.9, `the last frame is ${frames.at(-1).convergence} on its way`);
+    assert.ok(frames[0].convergence < frames.at(-1).convergence);
+    const used = processorSeconds(daemon);
+    await sleep(1000);
+    assert.ok(processorSeconds(daemon) - used < 0.05, 'the daemon rests');
     await client.close();
   });
 

@@ -1,5 +1,5 @@
 /** Units that end the names of parameters, and what people read instead. */
-const UNIT_ENDINGS = /** @type {Record<string, string>} */ ({ _m: 'm', _rad: '°', _s: 's', _ev: 'EV' });
+const UNIT_ENDINGS = /** @type {Record<string, string>} */ ({ _m: 'm', _rad: '°', _s: 's', _ms: 'ms', _ev: 'EV' });
 
 const ABBREVIATIONS = new Set(['gi', 'ggx', 'pbr', 'ior', 'fov', 'aces', 'gpu', 'jpeg']);
 

@@ -1,6 +1,7 @@
 import { element } from '../ui/element.js';
 import { icon } from '../ui/icon.js';
 import { srgbFromLinear } from '../math/color.js';
+import { isGiSetting } from './gi_rules.js';
 import { addParameterControls } from './parameter_controls.js';
 import { wordsOf } from './labels.js';
 import { makeSection } from './sections.js';
@@ -41,7 +42,11 @@ export class LightTab {
       ['environment', 'Environment'],
       ['settings', 'Picture'],
     ].map(([group, title]) =>
-      addParameterControls(makeSection(this.shared, title), app.parameters(group), app.target(group)),
+      addParameterControls(
+        makeSection(this.shared, title),
+        app.parameters(group).filter(({ name }) => !isGiSetting(name)),
+        app.target(group),
+      ),
     );
     this.chooseLight();
   }

@@ -1,5 +1,6 @@
 import { linearFromSrgb, srgbFromLinear } from '../math/color.js';
 import { fromEulerDegrees, toEulerDegrees } from '../math/quaternion.js';
+import { element } from '../ui/element.js';
 import { labelOf, wordsOf } from './labels.js';
 import { VectorController } from './vector_controller.js';
 
@@ -22,6 +23,7 @@ import { VectorController } from './vector_controller.js';
  * @typedef {object} Target what the controls show and change
  * @property {(name: string) => any} get
  * @property {(name: string, value: any, transient: boolean) => void} set
+ * @property {(name: string) => string} [whyRests] why a value has no effect now; "" if it has
  */
 
 const MOST_SLIDER_STEPS = 1001;
@@ -88,9 +90,11 @@ function addControl(/** @type {any} */ gui, /** @type {Parameter} */ parameter, 
   controller.updateDisplay = () => {
     // While a control changes it shows its own value: the way there and back would round it.
     if (!isChanging) shown[name] = show(target.get(name));
+    showWhyRests(controller, parameter, target);
     return update();
   };
   describe(controller, parameter, name);
+  showWhyRests(controller, parameter, target);
   if (type !== 'color_alpha') return [controller];
   return [controller, addAlpha(gui, parameter, target)];
 }
@@ -103,7 +107,7 @@ function makeController(/** @type {any} */ gui, /** @type {Parameter} */ paramet
     (number) => number * factor,
   );
   if (values)
-    return gui.add(object, name, Object.fromEntries(values.map((v) => [wordsOf(v), v]))).name(label);
+    return gui.add(object, name, Object.fromEntries(values.map((v) => [choiceOf(v), v]))).name(label);
   if (type === 'vec3') return new VectorController(gui, object, name, { min, max, step, label });
   if (type === 'quaternion')
     return new VectorController(gui, object, name, { min: -360, max: 360, step: 1, label: `${label} (°)` });
@@ -115,6 +119,22 @@ function makeController(/** @type {any} */ gui, /** @type {Parameter} */ paramet
     controller.min(min);
   else controller.min(rounded(min)).max(rounded(max));
   return controller.step(unit === 'rad' ? 1 : step, false);
+}
+
+/** Keys that are whole numbers would come first, out of order: a space that is not seen stops that. */
+function choiceOf(/** @type {string} */ value) {
+  return /^\d+$/.test(value) ? `${value}\u00a0` : wordsOf(value);
+}
+
+/** A value that has no effect now is not to be changed, and says why. */
+function showWhyRests(/** @type {any} */ controller, /** @type {Parameter} */ { name, doc }, /** @type {Target} */ target) {
+  const why = target.whyRests?.(name) ?? '';
+  if (controller.domElement.dataset.why === why) return;
+  controller.domElement.dataset.why = why;
+  controller.domElement.title = why ? `${doc} Has no effect now: ${why}.` : doc;
+  controller.$name.querySelector('small')?.remove();
+  if (why) controller.$name.append(element('small', { class: 'why' }, ` ${why}`));
+  controller.disable(why !== '');
 }
 
 function addAlpha(/** @type {any} */ gui, /** @type {Parameter} */ parameter, /** @type {Target} */ target) {

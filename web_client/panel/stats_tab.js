@@ -1,5 +1,6 @@
 import { element } from '../ui/element.js';
 import { Chart } from './chart.js';
+import { makeEffectList, showEffects } from './effect_list.js';
 import { wordsOf } from './labels.js';
 
 const DRAW_MS = 500;
@@ -33,7 +34,7 @@ export class StatsTab {
     this.figures = element('dl', { class: 'info figures' });
     this.passes = element('ul', { class: 'bars', 'aria-label': 'Passes' });
     this.stages = element('ul', { class: 'bars', 'aria-label': 'Stages' });
-    this.effects = element('ul', { class: 'effects', 'aria-label': 'Effects' });
+    this.effects = makeEffectList();
     this.memory = element('ul', { class: 'bars', 'aria-label': 'Memory' });
     const charts = element('div', {});
     const section = (/** @type {string} */ title, /** @type {HTMLElement} */ content) => [element('h2', {}, title), content];
@@ -128,17 +129,7 @@ export class StatsTab {
       memory.map((/** @type {any} */ part) => ({ name: part.name, value: part.bytes })),
       bytes,
     );
-    this.effects.replaceChildren(
-      ...effects.map((/** @type {any} */ effect) =>
-        element(
-          'li',
-          { class: effect.on ? 'on' : '', title: effect.reason },
-          element('span', { class: 'name' }, wordsOf(effect.name)),
-          element('small', {}, effect.on ? 'on' : 'off'),
-          element('small', { class: 'reason' }, effect.reason),
-        ),
-      ),
-    );
+    showEffects(this.effects, effects);
   }
 
   #drawBars(

@@ -2,6 +2,7 @@ import { element } from '../ui/element.js';
 import { RENDER_SIZES } from '../view/view_size.js';
 import { wordsOf } from './labels.js';
 import { addParameterControls } from './parameter_controls.js';
+import { isRenderOption } from './render_tab.js';
 import { makeSection } from './sections.js';
 
 const KEYS = [
@@ -16,7 +17,7 @@ const KEYS = [
   ['Ctrl Z, Ctrl Y', 'undo, redo'],
 ];
 
-/** How this client looks: picture size, quality, debug view, pause, its camera, and the keys. */
+/** How this client looks: picture size, pause, its camera, and the keys. */
 export class ViewTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
@@ -36,8 +37,10 @@ export class ViewTab {
     const sizes = Object.fromEntries(Object.keys(RENDER_SIZES).map((name) => [wordsOf(name), name]));
     const size = picture.add(view, 'sizeChoice', sizes).name('Render size');
     size.onChange((/** @type {string} */ choice) => view.chooseSize(choice));
-    // The stage decides the size; the rest of the group is the user's.
-    const rows = app.parameters('view').filter(({ name }) => name !== 'width' && name !== 'height');
+    // The stage decides the size; the tab of rendering has what is about quality.
+    const rows = app
+      .parameters('view')
+      .filter(({ name }) => name !== 'width' && name !== 'height' && !isRenderOption(name));
     const options = addParameterControls(picture, rows, {
       get: (name) => view.options[name],
       set: (name, value) => view.configure({ [name]: value }),
