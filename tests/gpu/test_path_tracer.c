@@ -233,38 +233,111 @@ static void test_sky_lights_an_open_floor(void **state)
     gi_report_finish(&report);
 }
 
+// Under a sky of luminance 1 a white metal shows the directional albedo of its lobe: values by
+// numerical integration of the formulas of glTF 2.0, appendix B, seen head on.
+static void test_metal_under_a_sky_shows_its_albedo(void **state)
+{
+    (void)state;
+    static const double albedos[][2] = {{0.0, 1.0},   {0.2, 0.998}, {0.4, 0.968},
+                                        {0.6, 0.825}, {0.8, 0.555}, {1.0, 0.307}};
+    struct gi_report report = {0};
+    for (size_t i = 0; i < sizeof(albedos) / sizeof(albedos[0]); i++) {
+        struct scene *scene = test_square_scene(1.0f, 1.0f);
+        scene->materials[0].metallic = 1.0f;
+        scene->materials[0].roughness = (float)albedos[i][0];
+        scene->environment = (struct scene_environment){
+            .type = SCENE_ENVIRONMENT_CONSTANT, .intensity = 1.0f, .color = {1.0f, 1.0f, 1.0f}};
+        struct path_params params = path_params(scene, 64);
+        gi_check_ratio(&report, trace_mean(&params, SKY), albedos[i][1], 0.005,
+                       "white metal of roughness %g under a sky", albedos[i][0]);
+        scene_destroy(&scene);
+    }
+    gi_report_finish(&report);
+}
+
+// Light that falls on gloss by sampling emitters and by following reflections is the same: a small
+// and a large emitter over surfaces from smooth to rough, against rays alone, which is what a sky
+// of the emitter's radiance and shape would give. Here: the whole upper half glows.
+static void test_gloss_in_a_glowing_box(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    static const float roughnesses[] = {0.05f, 0.3f, 0.9f};
+    for (int i = 0; i < 6; i++) {
+        double means[2];
+        for (int sky = 0; sky < 2; sky++) {
+            // Black walls that glow, or nothing but a sky that glows as much.
+            struct scene *scene = sky ? scene_create("sky")
+                                      : gi_box_scene(&(struct gi_box_params){
+                                            .emission = 1.0f, .half_edge_m = 2.0f, .divisions = 1});
+            scene->environment = (struct scene_environment){
+                .type = SCENE_ENVIRONMENT_CONSTANT, .intensity = 1.0f, .color = {1.0f, 1.0f, 1.0f}};
+            struct scene_material gloss;
+            scene_material_init(&gloss, "gloss");
+            gloss.base_color[0] = 0.6f;
+            gloss.metallic = i < 3 ? 0.0f : 1.0f;
+            gloss.roughness = roughnesses[i % 3];
+            uint32_t material = scene_add_material(scene, &gloss);
+            uint32_t mesh = scene_add_mesh(scene, "gloss");
+            const float corners[4][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+            assert_true(builtin_add_quad(scene, corners, material));
+            builtin_add_mesh_node(scene, "gloss", mesh);
+            scene_update_world_transforms(scene);
+            struct path_params params = path_params(scene, 256);
+            params.camera.eye[0] = 1.1f;
+            params.camera.eye[2] = 0.9f;
+            means[sky] = trace_mean(&params, sky ? SKY : DIRECT);
+            scene_destroy(&scene);
+        }
+        gi_check_ratio(&report, means[0], means[1], 0.01, "gloss, roughness %g, metallic %d",
+                       (double)roughnesses[i % 3], i / 3);
+    }
+    gi_report_finish(&report);
+}
+
+static struct scene *load_builtin_without_sky(const char *name)
+{
+    struct error error = {""};
+    struct scene *scene = scene_create_builtin(name, &error);
+    assert_non_null(scene);
+    scene->environment.type = SCENE_ENVIRONMENT_NONE;
+    return scene;
+}
+
 // Means over the picture: the renderer takes an emitter's shadow from its centre, which moves
 // light, but on the whole neither adds nor loses much. Both look along the same rays: a lamp is
 // much brighter than what it lights, and few pixels wide.
+static void check_direct_light(struct gi_report *report, struct scene *scene, double tolerance)
+{
+    struct frame_params frame = gi_params(96, 96, GI_METHOD_NONE);
+    frame.quality = QUALITY_FINAL;
+    gi_scene_camera(scene, &frame.camera);
+    struct test_picture shown = gi_draw(scene, &frame);
+    struct path_params params = path_params(scene, 16);
+    params.camera = frame.camera;
+    params.width = params.height = 2 * 96; // final quality averages four pixels
+    params.bounces = 0;
+    params.pixel_center = true;
+    struct path_picture traced;
+    assert_true(path_trace(&params, &traced));
+    double measured[3], expected[3];
+    gi_mean(shown.pixels, 96, 96, measured);
+    gi_mean(traced.direct, traced.width, traced.height, expected);
+    for (int c = 0; c < 3; c++)
+        gi_check_ratio(report, measured[c], expected[c], tolerance, "%s, direct light, channel %d",
+                       scene->name, c);
+    path_picture_finish(&traced);
+    gi_picture_finish(&shown);
+    scene_destroy(&scene);
+}
+
 static void test_renderer_shows_the_same_direct_light(void **state)
 {
     (void)state;
     struct gi_report report = {0};
-    struct error error = {""};
-    struct scene *scenes[2] = {scene_create_builtin("cornell", &error), gi_corridor_scene()};
-    static const char *const names[2] = {"cornell", "corridor"};
-    for (int i = 0; i < 2; i++) {
-        assert_non_null(scenes[i]);
-        struct frame_params frame = gi_params(96, 96, GI_METHOD_NONE);
-        frame.quality = QUALITY_FINAL;
-        gi_scene_camera(scenes[i], &frame.camera);
-        struct test_picture shown = gi_draw(scenes[i], &frame);
-        struct path_params params = path_params(scenes[i], 16);
-        params.camera = frame.camera;
-        params.width = params.height = 2 * 96; // final quality averages four pixels
-        params.pixel_center = true;
-        struct path_picture traced;
-        assert_true(path_trace(&params, &traced));
-        double measured[3], expected[3];
-        gi_mean(shown.pixels, 96, 96, measured);
-        gi_mean(traced.direct, traced.width, traced.height, expected);
-        for (int c = 0; c < 3; c++)
-            gi_check_ratio(&report, measured[c], expected[c], 0.02, "%s, direct light, channel %d",
-                           names[i], c);
-        path_picture_finish(&traced);
-        gi_picture_finish(&shown);
-        scene_destroy(&scenes[i]);
-    }
+    check_direct_light(&report, load_builtin_without_sky("cornell"), 0.02);
+    check_direct_light(&report, gi_corridor_scene(), 0.02);
+    check_direct_light(&report, load_builtin_without_sky("material-grid"), 0.02);
     gi_report_finish(&report);
 }
 
@@ -291,6 +364,8 @@ int main(void)
         cmocka_unit_test(test_furnace_is_a_geometric_series),
         cmocka_unit_test(test_lamp_in_a_box_balances),
         cmocka_unit_test(test_sky_lights_an_open_floor),
+        cmocka_unit_test(test_metal_under_a_sky_shows_its_albedo),
+        cmocka_unit_test(test_gloss_in_a_glowing_box),
         cmocka_unit_test(test_renderer_shows_the_same_direct_light),
         cmocka_unit_test(test_seed_alone_decides),
     };
