@@ -21,7 +21,7 @@ static bool fail_range(const struct parameter *parameter, const cJSON *item, dou
 static bool fail_enum(const struct parameter *parameter, const cJSON *item, struct rpc_error *error)
 {
     char *json = cJSON_PrintUnformatted(item);
-    char list[256] = "";
+    char list[384] = "";
     for (size_t i = 0, used = 0; parameter->values[i] && used < sizeof(list); i++)
         used += (size_t)snprintf(list + used, sizeof(list) - used, "%s%s", i ? ", " : "",
                                  parameter->values[i]);

@@ -51,6 +51,9 @@ const char *const parameter_type_names[PARAMETER_TYPE_COUNT] = {
 #define MAX_EMITTED      1e7
 #define MAX_SIZE_M       1e6
 
+// As render_settings_init() has it.
+#define GI_METHOD_DEFAULT "\"none\""
+
 static const struct parameter parameters[] = {
     STRING_(GROUP_LIGHT, "name", "Name shown to people."),
     ENUM_(GROUP_LIGHT, "type", 0, "\"point\"", NAMES("directional", "point", "spot"),
@@ -123,7 +126,37 @@ static const struct parameter parameters[] = {
     FLOAT_(GROUP_ENVIRONMENT, "rotation_rad", -FULL_TURN_RAD, FULL_TURN_RAD, 0.01, "rad", "0",
            "Turns the surroundings about the vertical."),
 
-    ENUM_(GROUP_SETTINGS, "gi_method", 0, "\"none\"", NAMES("none"), "Method of indirect light."),
+    ENUM_(GROUP_SETTINGS, "gi_method", 0, GI_METHOD_DEFAULT, NAMES("none", "clipmap", "grid"),
+          "How indirect light is found: not at all, by voxels around the camera, or around the "
+          "whole scene."),
+    ENUM_(GROUP_SETTINGS, "voxel_resolution", 0, "\"auto\"", NAMES("auto", "64", "128", "256"),
+          "Voxels along an edge of a cube; 256 is for the grid, clipmaps take 128."),
+    ENUM_(GROUP_SETTINGS, "voxel_directions", 0, "\"anisotropic\"",
+          NAMES("anisotropic", "isotropic"),
+          "Whether a voxel holds light for six directions, or one for all."),
+    INT_(GROUP_SETTINGS, "clip_levels", 0, 6, "", "0",
+         "Nested cubes of the clipmap; 0 is as many as the scene needs."),
+    ENUM_(GROUP_SETTINGS, "cone_set", 0, "\"auto\"", NAMES("auto", "5", "6", "9", "16", "32"),
+          "Cones that gather light above a surface; auto is by quality."),
+    FLOAT_(GROUP_SETTINGS, "cone_step", 0, 2, 0.05, "diameters", "0",
+           "Length of a cone's steps, 0.25 or more; 0 is by quality."),
+    ENUM_(GROUP_SETTINGS, "gather_mode", 0, "\"auto\"", NAMES("auto", "cache", "half", "pixel"),
+          "Where cones start: at voxels, at every other pixel, at every pixel."),
+    INT_(GROUP_SETTINGS, "bounces", 0, 16, "", "0", "Of indirect light; 0 is unlimited."),
+    FLOAT_(GROUP_SETTINGS, "indirect_intensity", 0, 100, 0.05, "", "1",
+           "Indirect light is multiplied by this; 1 is physical."),
+    BOOL_(GROUP_SETTINGS, "ambient_occlusion", 0, "false",
+          "Darkens corners beyond what is physical."),
+    BOOL_(GROUP_SETTINGS, "soft_shadows", 0, "true",
+          "Lights that have a size cast shadows with soft edges."),
+    BOOL_(GROUP_SETTINGS, "indirect_specular", 0, "true", "Surfaces reflect what is around them."),
+    BOOL_(GROUP_SETTINGS, "refraction", 0, "true", "Glass bends what is seen through it."),
+    BOOL_(GROUP_SETTINGS, "environment_light", 0, "true",
+          "What surrounds the scene adds to indirect light."),
+    BOOL_(GROUP_SETTINGS, "voxelize_every_frame", 0, "false",
+          "Grid: makes the voxels anew for each frame; slower, for comparison."),
+    ENUM_(GROUP_SETTINGS, "levels_per_frame", 0, "\"all\"", NAMES("all", "one"),
+          "Clipmap: how many cubes are lit anew in a frame."),
     ENUM_(GROUP_SETTINGS, "tonemap", PARAMETER_LIVE, "\"hable\"",
           NAMES("hable", "aces", "khronos_neutral", "none"), "Curve from radiance to the screen."),
     ENUM_(GROUP_SETTINGS, "exposure_mode", PARAMETER_LIVE, "\"automatic\"",
@@ -145,12 +178,22 @@ static const struct parameter parameters[] = {
 
     INT_(GROUP_VIEW, "width", 1, 3840, "px", "640", "Width of this client's picture."),
     INT_(GROUP_VIEW, "height", 1, 2160, "px", "360", "Height of this client's picture."),
-    ENUM_(GROUP_VIEW, "quality", 0, "\"interactive\"",
-          NAMES("draft", "interactive", "high", "final"), "Row of the quality table."),
+    ENUM_(GROUP_VIEW, "quality", 0, "\"final\"", NAMES("draft", "interactive", "high", "final"),
+          "Row of the quality table that a still picture gets."),
+    BOOL_(GROUP_VIEW, "adaptive", 0, "true",
+          "While things move, at most interactive quality; off: always the chosen one."),
+    INT_(GROUP_VIEW, "target_frame_ms", 5, 10000, "ms", "100",
+         "If moving frames take longer than this, they are drawn as draft."),
     ENUM_(GROUP_VIEW, "debug_view", 0, "\"final\"",
           NAMES("final", "direct", "albedo", "normal", "roughness", "metallic", "emission", "depth",
-                "ids", "lights_per_tile", "shadow_cascades"),
+                "ids", "lights_per_tile", "shadow_cascades", "voxel_opacity", "voxel_albedo",
+                "voxel_normal", "voxel_radiance", "voxel_irradiance", "indirect_diffuse",
+                "indirect_specular", "ambient_occlusion", "cache_age", "tile_classes"),
           "Which picture to show."),
+    INT_(GROUP_VIEW, "debug_level", 0, 8, "", "0",
+         "Which cube or mip level the voxel pictures show; 0 is the finest."),
+    ENUM_(GROUP_VIEW, "debug_face", 0, "\"+x\"", NAMES("+x", "-x", "+y", "-y", "+z", "-z"),
+          "Which direction of the voxels the voxel pictures show."),
     BOOL_(GROUP_VIEW, "paused", 0, "false", "No frames while true."),
 
     VEC3_(GROUP_CAMERA, "eye", 0, ANY_PLACE_M, 0.1, "m", "[0,0,5]", "World position of the eye."),
@@ -253,7 +296,7 @@ static void write_range(const struct parameter *parameter, char *out, size_t siz
 
 int parameter_write_markdown_row(const struct parameter *parameter, char *out, size_t size)
 {
-    char range[256];
+    char range[512];
     write_range(parameter, range, sizeof(range));
     return snprintf(out, size, "| %s | %s | %s | %s | %s | `%s` | %s | %s |",
                     parameter_group_names[parameter->group], parameter->name,

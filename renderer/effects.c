@@ -22,6 +22,15 @@ static const struct {
     [EFFECT_ENVIRONMENT] = {"environment", "ENVIRONMENT"},
     [EFFECT_TRANSPARENCY] = {"transparency", "TRANSPARENCY"},
     [EFFECT_AUTO_EXPOSURE] = {"auto_exposure", "AUTO_EXPOSURE"},
+    [EFFECT_INDIRECT_DIFFUSE] = {"indirect_diffuse", "VOXEL_LIGHT"},
+    [EFFECT_BOUNCE] = {"bounce", "FEEDBACK"},
+    [EFFECT_INDIRECT_SPECULAR] = {"indirect_specular", "INDIRECT_SPECULAR"},
+    [EFFECT_REFRACTION] = {"refraction", "REFRACTION"},
+    [EFFECT_SOFT_SHADOWS] = {"soft_shadows", "SOFT_SHADOWS"},
+    [EFFECT_AMBIENT_OCCLUSION] = {"ambient_occlusion", "AMBIENT_OCCLUSION"},
+    [EFFECT_ENVIRONMENT_LIGHT] = {"environment_light", "ENVIRONMENT_LIGHT"},
+    [EFFECT_VOXEL_COLORS] = {"voxel_colors", "VOXEL_COLORS"},
+    [EFFECT_CLIP_LEVELS] = {"clip_levels", "CLIP_LEVELS"},
 };
 
 const char *effect_name(enum effect effect)
@@ -36,6 +45,12 @@ static void decide(struct effect_plan *plan, enum effect effect, bool on, const 
     snprintf(plan->reasons[effect], sizeof(plan->reasons[effect]), "%s", reason);
 }
 
+static bool has_environment(const struct resident *resident)
+{
+    return resident->scene->environment.type != SCENE_ENVIRONMENT_NONE &&
+           resident->scene->environment.intensity > 0.0f;
+}
+
 static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t count,
                          const char *what)
 {
@@ -45,6 +60,64 @@ static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t 
     else
         snprintf(reason, sizeof(reason), "no %s in the scene", what);
     decide(plan, effect, count > 0, reason);
+}
+
+// Effects of global illumination. Returns those that the settings allow: the rest stay off even
+// where everything is forced.
+static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *resident,
+                              const struct render_settings *settings)
+{
+    const struct resident_counts *counts = &resident->counts;
+    static const enum effect all[] = {
+        EFFECT_INDIRECT_DIFFUSE,  EFFECT_BOUNCE,       EFFECT_INDIRECT_SPECULAR,
+        EFFECT_REFRACTION,        EFFECT_SOFT_SHADOWS, EFFECT_AMBIENT_OCCLUSION,
+        EFFECT_ENVIRONMENT_LIGHT, EFFECT_VOXEL_COLORS, EFFECT_CLIP_LEVELS};
+    if (settings->gi_method == GI_METHOD_NONE) {
+        for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
+            decide(plan, all[i], false, "no global illumination chosen");
+        return 0;
+    }
+    bool environment = settings->environment_light && has_environment(resident);
+    bool source = counts->lights > 0 || counts->emissive_materials > 0 || environment;
+    const struct {
+        enum effect effect;
+        bool allowed, on;
+        const char *because, *missing;
+    } rules[] = {
+        {EFFECT_INDIRECT_DIFFUSE, true, source && counts->reflective_materials > 0,
+         "light meets surfaces that reflect",
+         source ? "every surface is black or unlit" : "nothing in the scene gives light"},
+        {EFFECT_BOUNCE, settings->bounces != 1, source && counts->reflective_materials > 0,
+         "surfaces reflect what they receive", "no surface reflects light"},
+        {EFFECT_INDIRECT_SPECULAR, settings->indirect_specular,
+         source && counts->specular_materials > 0, "a material reflects like a gloss",
+         "no specular material in the scene"},
+        {EFFECT_REFRACTION, settings->refraction, counts->transmissive_materials > 0,
+         "a material transmits light", "no transmissive material in the scene"},
+        {EFFECT_SOFT_SHADOWS, settings->soft_shadows && settings->shadows, counts->sized_lights > 0,
+         "a light has a size", "no light has a size"},
+        {EFFECT_AMBIENT_OCCLUSION, settings->ambient_occlusion,
+         source && counts->reflective_materials > 0, "asked for", "no indirect light to darken"},
+        {EFFECT_ENVIRONMENT_LIGHT, settings->environment_light, environment,
+         "the environment lights surfaces", "no environment in the scene"},
+    };
+    uint32_t allowed = 0;
+    for (size_t i = 0; i < sizeof(rules) / sizeof(rules[0]); i++) {
+        bool on = rules[i].allowed && rules[i].on;
+        allowed |= rules[i].allowed ? EFFECT_BIT(rules[i].effect) : 0;
+        decide(plan, rules[i].effect, on,
+               !rules[i].allowed
+                   ? (rules[i].effect == EFFECT_BOUNCE ? "one bounce asked for" : "switched off")
+               : on ? rules[i].because
+                    : rules[i].missing);
+    }
+    bool colors = counts->textured_materials > 0 || counts->colored_primitives > 0;
+    decide(plan, EFFECT_VOXEL_COLORS, colors,
+           colors ? "textures or vertex colours in the scene" : "no textures or vertex colours");
+    bool clipmap = settings->gi_method == GI_METHOD_CLIPMAP;
+    decide(plan, EFFECT_CLIP_LEVELS, clipmap,
+           clipmap ? "the method is clipmap" : "the method is grid");
+    return allowed | EFFECT_BIT(EFFECT_VOXEL_COLORS);
 }
 
 void effects_plan(struct effect_plan *plan, const struct resident *resident,
@@ -79,16 +152,18 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
     else
         decide_count(plan, EFFECT_BLINN_PHONG, counts->blinn_phong_materials,
                      "Blinn-Phong material");
-    bool environment = resident->scene->environment.type != SCENE_ENVIRONMENT_NONE &&
-                       resident->scene->environment.intensity > 0.0f;
+    bool environment = has_environment(resident);
     decide(plan, EFFECT_ENVIRONMENT, environment,
            environment ? "the scene has an environment" : "no environment in the scene");
     bool automatic = settings->exposure_mode == EXPOSURE_AUTOMATIC;
     decide(plan, EFFECT_AUTO_EXPOSURE, automatic,
            automatic ? "exposure is automatic" : "exposure is fixed");
+    uint32_t chosen = EFFECT_BIT(EFFECT_AUTO_EXPOSURE) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
+                      ((1u << EFFECT_COUNT) - EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE));
+    uint32_t allowed = plan_indirect(plan, resident, settings) | ~chosen;
     if (settings->force_all_effects)
         for (int i = 0; i < EFFECT_COUNT; i++)
-            if (i != EFFECT_AUTO_EXPOSURE && !(plan->bits & EFFECT_BIT(i)))
+            if ((allowed & EFFECT_BIT(i)) && !(plan->bits & EFFECT_BIT(i)))
                 decide(plan, (enum effect)i, true, "forced");
 }
 

@@ -19,6 +19,15 @@ enum effect {
     EFFECT_ENVIRONMENT,
     EFFECT_TRANSPARENCY, // blended or transmissive materials
     EFFECT_AUTO_EXPOSURE,
+    EFFECT_INDIRECT_DIFFUSE, // light that matte surfaces pass on; all of the below need voxels, too
+    EFFECT_BOUNCE,           // more than one reflection
+    EFFECT_INDIRECT_SPECULAR, // what glossy surfaces mirror
+    EFFECT_REFRACTION,
+    EFFECT_SOFT_SHADOWS, // of lights that have a size
+    EFFECT_AMBIENT_OCCLUSION,
+    EFFECT_ENVIRONMENT_LIGHT, // cones that leave the scene see the environment
+    EFFECT_VOXEL_COLORS,      // textures or vertex colours in voxels
+    EFFECT_CLIP_LEVELS,       // voxels in nested cubes rather than a grid
     EFFECT_COUNT
 };
 
@@ -29,7 +38,13 @@ enum effect {
     (EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_FLAT_SHADOWS) |                                \
      EFFECT_BIT(EFFECT_CUBE_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES) |                            \
      EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) | EFFECT_BIT(EFFECT_AREA_LIGHTS) |                         \
-     EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR))
+     EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR) |                                \
+     EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE))
+// Effects that need the scene's voxels.
+#define VOXEL_EFFECTS                                                                              \
+    (EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) | EFFECT_BIT(EFFECT_INDIRECT_SPECULAR) |                  \
+     EFFECT_BIT(EFFECT_REFRACTION) | EFFECT_BIT(EFFECT_SOFT_SHADOWS) |                             \
+     EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION))
 #define SURFACE_EFFECTS (EFFECT_BIT(EFFECT_TEXTURES) | EFFECT_BIT(EFFECT_VERTEX_COLORS))
 
 struct resident;

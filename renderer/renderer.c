@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "renderer/camera.h"
+#include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/resident/resident.h"
@@ -22,6 +23,7 @@ struct renderer {
     struct resident *resident; // NULL while nothing is shown
     struct scene *scene;
     uint64_t scene_number; // tells scenes apart that were loaded one after another
+    struct gi gi;
     uint32_t view_count;
     struct view *views[RENDERER_MAX_VIEWS]; // the first view_count
     struct ray_scene *ray_scene;
@@ -62,6 +64,7 @@ struct renderer *renderer_create(const struct renderer_params *params, struct er
     }
     if (params->watch_shaders)
         gpu_programs_watch(renderer->gpu);
+    gi_init(&renderer->gi, renderer->gpu);
     return renderer;
 }
 
@@ -73,6 +76,7 @@ void renderer_destroy(struct renderer **renderer_slot)
         return;
     assert(renderer->view_count == 0);
     ray_scene_destroy(&renderer->ray_scene);
+    gi_finish(&renderer->gi);
     resident_destroy(&renderer->resident);
     gpu_destroy(&renderer->gpu);
     free(renderer);
@@ -99,6 +103,7 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
     for (uint32_t i = 0; i < renderer->view_count; i++)
         view_release_cascades(renderer->views[i]);
     ray_scene_destroy(&renderer->ray_scene);
+    gi_release_all(&renderer->gi);
     resident_destroy(&renderer->resident);
     renderer->resident = resident;
     renderer->scene = scene;
@@ -124,6 +129,7 @@ void renderer_view_destroy(struct renderer *renderer, struct view **view)
             break;
         }
     view_destroy(view);
+    gi_release_unused(&renderer->gi, renderer->views, renderer->view_count);
 }
 
 static bool params_equal(const struct frame_params *a, const struct frame_params *b)
@@ -196,9 +202,12 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->textures[1] = resident->diagonal_m * SHADOW_NEAR_FRACTION;
 }
 
-static bool draw_frame(struct frame *frame, struct error *out_error)
+static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)
 {
     struct view *view = frame->view;
+    if (!gi_begin_frame(&renderer->gi, frame, out_error))
+        return false;
+    gi_release_unused(&renderer->gi, renderer->views, renderer->view_count);
     if (!view_prepare(view, frame->resident, frame->params, frame->plan.bits))
         return error_set(out_error, "a view of %u x %u pixels does not fit into GPU memory",
                          frame->params->width, frame->params->height);
@@ -216,6 +225,8 @@ static bool draw_frame(struct frame *frame, struct error *out_error)
                        frame->params->camera.eye);
     resident_bind(frame->resident);
     view_bind(view);
+    if (frame->volume)
+        voxel_volume_bind(frame->volume);
     return passes_execute(frame, out_error);
 }
 
@@ -233,6 +244,16 @@ static bool params_are_valid(const struct frame_params *params, struct error *ou
     return isfinite(camera->fov_y_rad) || error_set(out_error, "the field of view is not finite");
 }
 
+// How far the newest drawn picture has come.
+static float view_convergence(const struct renderer *renderer, const struct view *view)
+{
+    const struct voxel_volume *volume = gi_find(&renderer->gi, view->volume_serial);
+    if (!volume)
+        return 1.0f;
+    float light = voxel_light_convergence(volume);
+    return light;
+}
+
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error)
 {
@@ -248,8 +269,9 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     struct resident *resident = renderer->resident;
     const struct scene_revisions revisions = renderer->scene->revisions;
     bool same_scene = view->drawn && view->last_scene == renderer->scene_number;
-    if (same_scene && params_equal(&view->last_params, params) &&
-        memcmp(&view->last_revisions, &revisions, sizeof(revisions)) == 0)
+    bool same = same_scene && params_equal(&view->last_params, params) &&
+                memcmp(&view->last_revisions, &revisions, sizeof(revisions)) == 0;
+    if (same && view_convergence(renderer, view) >= 1.0f)
         return RENDER_UNCHANGED;
     if (!resident_update(resident, out_error))
         return RENDER_FAILED;
@@ -263,7 +285,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .visibility_changed = !same_scene || !same_surfaces(view, params, &revisions),
     };
     effects_plan(&frame.plan, resident, params);
-    if (!draw_frame(&frame, out_error)) {
+    if (!draw_frame(renderer, &frame, out_error)) {
         view->drawn = false;
         return RENDER_FAILED;
     }
@@ -278,8 +300,10 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .width = params->width,
         .height = params->height,
         .output = params->output,
-        .convergence = 1.0f,
+        .convergence = view_convergence(renderer, view),
     };
+    slot->volume_serial = view->volume_serial;
+    slot->generation = frame.volume && frame.light_work.trace ? frame.volume->light.generation : 0;
     view->ring_next = (view->ring_next + 1) % RENDERER_FRAMES_IN_RING;
     view->ring_count++;
     view->drawn = true;
@@ -295,10 +319,26 @@ void renderer_view_invalidate(struct view *view)
     view->drawn = false;
 }
 
+// Tells the volume how the frame's cones have done.
+static void collect_light(struct renderer *renderer, struct view *view,
+                          const struct ring_frame *slot, const void *bytes)
+{
+    struct voxel_volume *volume = gi_find(&renderer->gi, slot->volume_serial);
+    if (!volume || slot->generation == 0)
+        return;
+    struct voxel_light_report report;
+    memcpy(&report, bytes, sizeof(report));
+    gpu_timer_poll(view->timer);
+    double trace_ms = 0.0;
+    for (uint32_t i = 0; i < PASS_COUNT; i++)
+        if (all_passes[i] == &irradiance_cache_pass)
+            trace_ms = gpu_timer_get_ms(view->timer, i);
+    voxel_light_collect(volume, slot->generation, &report, trace_ms);
+}
+
 bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wait,
                            struct frame_pixels *out_pixels)
 {
-    (void)renderer;
     if (view->ring_count == 0)
         return false;
     assert(!view->collected);
@@ -315,6 +355,7 @@ bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wa
     memcpy(&found, bytes + size_bytes, sizeof(found));
     view->last_exposure =
         slot->fixed_exposure > 0.0f ? slot->fixed_exposure : found * slot->exposure_bias;
+    collect_light(renderer, view, slot, bytes + size_bytes + VIEW_EXPOSURE_BYTES);
     for (int i = 0; i < (shape.output == FRAME_OUTPUT_YCBCR ? 3 : 1); i++)
         slot->result.planes[i] = bytes + offsets[i];
     slot->result.frame_time_ms = now_ms() - slot->started_ms;
@@ -369,7 +410,7 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
     static const char *const groups[][2] = {
         {"geometry", "geometry"},  {"materials", "materials"},    {"textures", "textures"},
         {"lights", "lights"},      {"shadow_maps", "shadow_map"}, {"environment", "environment"},
-        {"view_targets", "view."}, {"readback", "readback"},
+        {"view_targets", "view."}, {"readback", "readback"},      {"gi", "gi."},
     };
     for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
         add_memory(statistics, renderer->gpu, groups[i][0], groups[i][1]);

@@ -151,7 +151,7 @@ bool view_prepare(struct view *view, const struct resident *resident,
     bool done =
         gpu_buffer_ensure(gpu, &view->output, "view.output", GPU_BUFFER_STATIC, output_bytes) &&
         gpu_buffer_ensure(gpu, &view->ring[view->ring_next].pixels, "readback", GPU_BUFFER_READBACK,
-                          output_bytes + VIEW_EXPOSURE_BYTES) &&
+                          output_bytes + VIEW_EXPOSURE_BYTES + VIEW_REPORT_BYTES) &&
         draw_list_reserve(&view->draws, resident) &&
         draw_list_reserve(&view->shadow_draws, resident);
     if (effect_bits & EFFECT_BIT(EFFECT_LIGHT_TILES)) {

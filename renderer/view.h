@@ -11,6 +11,8 @@
 
 // Behind the pixels in a ring buffer: the exposure that was found automatically.
 #define VIEW_EXPOSURE_BYTES 16u
+// Behind that: what the counters of the volume said (struct voxel_light_report).
+#define VIEW_REPORT_BYTES 16u
 
 struct ring_frame {
     struct gpu_buffer *pixels;
@@ -19,7 +21,8 @@ struct ring_frame {
     double started_ms;
     float fixed_exposure; // scale in use; 0 if it was found automatically
     float exposure_bias;
-    bool pending;
+    uint64_t volume_serial;
+    uint32_t generation; // of the cache that the frame traced; 0 for none
 };
 
 struct view {
@@ -58,6 +61,8 @@ struct view {
     uint32_t ring_oldest; // the next to collect
     uint32_t ring_count;
     bool collected; // the oldest is with the caller
+
+    uint64_t volume_serial; // of the volume that the newest frame was drawn with; 0 for none
 
     // What the newest drawn frame was made from.
     bool drawn;

@@ -13,6 +13,9 @@
 #define CLI_EXIT_RENDER 4
 #define CLI_EXIT_OUTPUT 5
 
+// No picture needs as many: a bound against one that never comes to rest.
+#define CLI_MAX_STILL_FRAMES 2000u
+
 int cli_render(int argc, char **argv);
 int cli_info(int argc, char **argv);
 int cli_bench(int argc, char **argv);
@@ -56,10 +59,32 @@ struct cJSON *cli_statistics_json(const struct cli_measurement *measurement,
 // from the front and a little above.
 void cli_default_camera(const struct scene *scene, float aspect, struct view_camera *out_camera);
 
-// Renders one frame of `params` and waits for it. On success the pixels must be released.
+// Renders one frame of `params` anew and waits for it. On success the pixels must be released.
 bool cli_render_frame(struct renderer *renderer, struct view *view,
                       const struct frame_params *params, struct frame_pixels *out_pixels,
                       struct error *out_error);
+
+// The same for a camera that moves: what earlier frames have gathered stays in use.
+bool cli_render_next_frame(struct renderer *renderer, struct view *view,
+                           const struct frame_params *params, struct frame_pixels *out_pixels,
+                           struct error *out_error);
+
+// Frames of one picture, drawn until it has converged.
+struct cli_still {
+    struct renderer *renderer;
+    struct view *view;
+    const struct frame_params *params;
+    uint32_t max_frames;
+    struct cli_measurement *measurement; // takes in each frame; NULL for none
+
+    // Results.
+    struct frame_pixels pixels; // of the newest frame
+    uint32_t frame_count;
+    bool converged; // else max_frames came first
+};
+
+// On success the pixels must be released.
+bool cli_render_still(struct cli_still *still, struct error *out_error);
 
 // Writes pixels by the file's extension: .pfm (FRAME_OUTPUT_LINEAR), .png or .jpg
 // (FRAME_OUTPUT_RGBA8).

@@ -5,16 +5,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-#include "server/cli.h"
+#include "server/cli_bench.h"
 
 #define DEFAULT_FRAMES 60
 #define WARM_UP_FRAMES 3
-#define ORBIT_STEP_RAD 0.01f
+#define MAX_FRAMES     10000u
 
 static const char usage[] =
     "usage: voxcast bench [SCENE|builtin:NAME]... [OPTIONS]\n"
+    "       voxcast bench natus|effects [OPTIONS]; see voxcast bench natus --help\n"
     "\n"
     "Measures frames of a camera that sways around its target, for each scene (default: all\n"
     "built-in ones), and prints JSON.\n"
@@ -29,54 +29,25 @@ struct bench_options {
     enum quality quality;
 };
 
-static double now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
-
-// Turns the eye about the vertical through the target.
-static void sway_camera(const struct view_camera *from, uint32_t frame, struct view_camera *to)
-{
-    *to = *from;
-    float angle = 0.3f * sinf((float)frame * ORBIT_STEP_RAD * 3.0f);
-    float x = from->eye[0] - from->target[0], z = from->eye[2] - from->target[2];
-    to->eye[0] = from->target[0] + cosf(angle) * x + sinf(angle) * z;
-    to->eye[2] = from->target[2] - sinf(angle) * x + cosf(angle) * z;
-}
-
 static bool measure(struct renderer *renderer, const struct scene *scene,
                     const struct bench_options *options, struct cJSON *entry,
                     struct error *out_error)
 {
-    struct frame_params params = {
-        .width = 640, .height = 360, .quality = options->quality, .output = FRAME_OUTPUT_YCBCR};
-    render_settings_init(&params.settings);
-    struct view_camera start;
-    cli_default_camera(scene, 640.0f / 360.0f, &start);
-    struct view *view = renderer_view_create(renderer);
-    struct cli_measurement measurement = {0};
-    struct frame_statistics statistics = {0};
-    bool done = view != NULL;
-    for (uint32_t i = 0; i < options->frames + WARM_UP_FRAMES && done; i++) {
-        struct frame_pixels pixels;
-        sway_camera(&start, i, &params.camera);
-        done = cli_render_frame(renderer, view, &params, &pixels, out_error);
-        if (!done)
-            break;
-        renderer_view_get_statistics(renderer, view, &statistics);
-        renderer_view_release(renderer, view);
-        if (i >= WARM_UP_FRAMES)
-            done = cli_measurement_add(&measurement, &statistics);
-    }
+    struct bench_run run = {.renderer = renderer,
+                            .scene = scene,
+                            .params = {.width = 640,
+                                       .height = 360,
+                                       .quality = options->quality,
+                                       .output = FRAME_OUTPUT_YCBCR},
+                            .frames = options->frames,
+                            .warm_up_frames = WARM_UP_FRAMES};
+    render_settings_init(&run.params.settings);
+    cli_default_camera(scene, 640.0f / 360.0f, &run.params.camera);
+    struct bench_result result;
+    bool done = bench_measure(&run, &result, out_error);
     if (done)
-        cJSON_AddItemToObject(entry, "statistics",
-                              cli_statistics_json(&measurement, &statistics,
-                                                  renderer_get_info(renderer), scene, params.width,
-                                                  params.height));
-    cli_measurement_finish(&measurement);
-    renderer_view_destroy(renderer, &view);
+        cJSON_AddItemToObject(entry, "statistics", bench_result_json(&run, &result));
+    bench_result_finish(&result);
     return done;
 }
 
@@ -84,17 +55,17 @@ static bool bench_scene(struct renderer *renderer, const char *source,
                         const struct bench_options *options, struct cJSON *list,
                         struct error *out_error)
 {
-    double started_ms = now_ms();
+    double started_ms = bench_now_ms();
     struct scene *scene = scene_load(source, out_error);
     if (!scene)
         return false;
-    double loaded_ms = now_ms();
+    double loaded_ms = bench_now_ms();
     struct cJSON *entry = cJSON_CreateObject();
     cJSON_AddItemToArray(list, entry);
     cJSON_AddStringToObject(entry, "name", source);
     bool done = renderer_set_scene(renderer, scene, out_error);
     cJSON_AddNumberToObject(entry, "load_ms", round(loaded_ms - started_ms));
-    cJSON_AddNumberToObject(entry, "upload_ms", round(now_ms() - loaded_ms));
+    cJSON_AddNumberToObject(entry, "upload_ms", round(bench_now_ms() - loaded_ms));
     done = done && measure(renderer, scene, options, entry, out_error);
     struct error ignored;
     renderer_set_scene(renderer, NULL, &ignored);
@@ -102,75 +73,79 @@ static bool bench_scene(struct renderer *renderer, const char *source,
     return done;
 }
 
-static bool parse_quality(const char *text, enum quality *out_quality)
-{
-    for (int i = 0; i < QUALITY_COUNT; i++)
-        if (strcmp(quality_names[i], text) == 0) {
-            *out_quality = (enum quality)i;
-            return true;
-        }
-    return false;
-}
-
-int cli_bench(int argc, char **argv)
+// False with a message, or with `out_help` if help was asked for.
+static bool parse_options(int argc, char **argv, struct bench_options *options, bool *out_help,
+                          struct error *out_error)
 {
     static const struct option long_options[] = {{"frames", required_argument, NULL, 'n'},
                                                  {"preset", required_argument, NULL, 'p'},
                                                  {"gpu", required_argument, NULL, 'G'},
                                                  {"help", no_argument, NULL, 'h'},
                                                  {NULL, 0, NULL, 0}};
-    struct bench_options options = {
+    *options = (struct bench_options){
         .gpu = "auto", .frames = DEFAULT_FRAMES, .quality = QUALITY_INTERACTIVE};
+    *out_help = false;
     opterr = 0;
     optind = 1;
     int option;
     while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        switch (option) {
-        case 'h':
-            fputs(usage, stdout);
-            return 0;
-        case 'n':
-            options.frames = (uint32_t)strtoul(optarg, NULL, 10);
-            if (options.frames < 1 || options.frames > 10000)
-                return cli_fail(CLI_EXIT_USAGE, "--frames is \"%s\"; allowed: 1 to 10000", optarg);
-            break;
-        case 'p':
-            if (!parse_quality(optarg, &options.quality))
-                return cli_fail(CLI_EXIT_USAGE,
-                                "--preset is \"%s\"; allowed: draft, interactive, "
-                                "high, final",
-                                optarg);
-            break;
-        case 'G':
-            options.gpu = optarg;
-            break;
-        default:
-            return cli_fail(CLI_EXIT_USAGE, "unknown or incomplete option \"%s\"",
-                            argv[optind - 1]);
+        if (option == 'h') {
+            *out_help = true;
+            return false;
         }
+        if (option == '?')
+            return error_set(out_error, "unknown or incomplete option \"%s\"", argv[optind - 1]);
+        if (option == 'n' && !bench_parse_count(optarg, 1, MAX_FRAMES, &options->frames))
+            return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %u", optarg, MAX_FRAMES);
+        if (option == 'p' && !bench_parse_quality(optarg, &options->quality))
+            return error_set(
+                out_error, "--preset is \"%s\"; allowed: draft, interactive, high, final", optarg);
+        if (option == 'G')
+            options->gpu = optarg;
     }
+    return true;
+}
+
+static int bench_scenes(struct renderer *renderer, int argc, char **argv,
+                        const struct bench_options *options)
+{
     struct error error = {""};
+    struct cJSON *root = cJSON_CreateObject();
+    struct cJSON *list = cJSON_AddArrayToObject(root, "scenes");
+    bool done = true;
+    for (int i = optind; i < argc && done; i++)
+        done = bench_scene(renderer, argv[i], options, list, &error);
+    for (uint32_t i = 0; optind == argc && done && scene_builtin_name(i); i++) {
+        char source[128];
+        snprintf(source, sizeof(source), "builtin:%s", scene_builtin_name(i));
+        done = bench_scene(renderer, source, options, list, &error);
+    }
+    if (done)
+        bench_print_json(root);
+    cJSON_Delete(root);
+    return done ? 0 : cli_fail(CLI_EXIT_SCENE, "%s", error.message);
+}
+
+int cli_bench(int argc, char **argv)
+{
+    if (argc > 1 && strcmp(argv[1], "natus") == 0)
+        return bench_natus(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "effects") == 0)
+        return bench_effects(argc - 1, argv + 1);
+    struct bench_options options;
+    struct error error = {""};
+    bool help;
+    if (!parse_options(argc, argv, &options, &help, &error)) {
+        if (!help)
+            return cli_fail(CLI_EXIT_USAGE, "%s", error.message);
+        fputs(usage, stdout);
+        return 0;
+    }
     struct renderer *renderer =
         renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);
     if (!renderer)
         return cli_fail(CLI_EXIT_RENDER, "%s", error.message);
-    struct cJSON *root = cJSON_CreateObject();
-    struct cJSON *list = cJSON_AddArrayToObject(root, "scenes");
-    int status = 0;
-    for (int i = optind; i < argc && status == 0; i++)
-        if (!bench_scene(renderer, argv[i], &options, list, &error))
-            status = cli_fail(CLI_EXIT_SCENE, "%s", error.message);
-    for (uint32_t i = 0; optind == argc && status == 0 && scene_builtin_name(i); i++) {
-        char source[128];
-        snprintf(source, sizeof(source), "builtin:%s", scene_builtin_name(i));
-        if (!bench_scene(renderer, source, &options, list, &error))
-            status = cli_fail(CLI_EXIT_SCENE, "%s", error.message);
-    }
+    int status = bench_scenes(renderer, argc, argv, &options);
     renderer_destroy(&renderer);
-    char *text = status == 0 ? cJSON_Print(root) : NULL;
-    if (text)
-        puts(text);
-    cJSON_free(text);
-    cJSON_Delete(root);
     return status;
 }

@@ -1,4 +1,4 @@
-// Picture files and the frames that go into them.
+// Picture files, and the camera that sees a whole scene.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -141,15 +141,4 @@ void cli_default_camera(const struct scene *scene, float aspect, struct view_cam
         out_camera->target[axis] = (float)center;
         out_camera->eye[axis] = (float)(center + distance * direction[axis]);
     }
-}
-
-bool cli_render_frame(struct renderer *renderer, struct view *view,
-                      const struct frame_params *params, struct frame_pixels *out_pixels,
-                      struct error *out_error)
-{
-    renderer_view_invalidate(view);
-    if (renderer_view_draw(renderer, view, params, out_error) != RENDER_DRAWN)
-        return false;
-    return renderer_view_collect(renderer, view, true, out_pixels) ||
-           error_set(out_error, "the GPU did not finish the frame");
 }

@@ -21,15 +21,20 @@ static const char usage[] =
     "  --eye X,Y,Z --target X,Y,Z [--up X,Y,Z]   a camera of your own, in metres\n"
     "  --fov-y-deg D        vertical field of view in degrees, 0.1 to 179\n"
     "  --size WxH           1x1 to 3840x2160 (default 1280x720)\n"
-    "  --gi METHOD          method of global illumination: none\n"
+    "  --gi METHOD          method of global illumination: none, clipmap or grid\n"
     "  --preset NAME        draft, interactive, high or final (default: final; with several\n"
     "                       frames: interactive)\n"
     "  --view VIEW          final, direct, albedo, normal, roughness, metallic, emission, depth,\n"
-    "                       ids, lights_per_tile or shadow_cascades\n"
+    "                       ids, lights_per_tile, shadow_cascades, voxel_opacity, voxel_albedo,\n"
+    "                       voxel_normal, voxel_radiance, voxel_irradiance, indirect_diffuse,\n"
+    "                       indirect_specular, ambient_occlusion, cache_age or tile_classes;\n"
+    "                       see also --set debug_level=N and debug_face=+x\n"
     "  --set KEY=VALUE      a parameter, such as lights.0.intensity=20 or exposure_ev=1; may be\n"
     "                       given many times\n"
-    "  --frames N           render N frames and measure them (default 1)\n"
-    "  --move-eye X,Y,Z     displacement of eye and target per frame, in metres\n"
+    "  --frames N           render exactly N frames and measure them (default: as many as the\n"
+    "                       picture needs to converge)\n"
+    "  --move-eye X,Y,Z     with --frames: displacement of eye and target per frame, in metres\n"
+    "  --converge-first     with --frames: let the first picture converge before measuring\n"
     "  --stats FILE         write statistics as JSON\n"
     "  --gpu WHICH          auto, software or a device index (default auto)\n";
 
@@ -40,10 +45,10 @@ struct render_options {
     const char *camera;
     const char *gpu;
     const char *preset;
-    bool has_eye, has_target, has_up, has_fov, has_move;
+    bool has_eye, has_target, has_up, has_fov, has_move, converge_first;
     float eye[3], target[3], up[3], move[3];
     float fov_y_rad;
-    uint32_t frames;
+    uint32_t frames; // 0: until the picture has converged
     uint32_t set_count;
     const char *sets[MAX_SETS];
     uint32_t width, height;
@@ -131,6 +136,9 @@ static bool take_option(struct render_options *options, int option, const char *
             return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %d", value, MAX_FRAMES);
         options->frames = (uint32_t)number;
         return true;
+    case 'k':
+        options->converge_first = true;
+        return true;
     case 'S':
         if (options->set_count == MAX_SETS)
             return error_set(out_error, "--set is given more than %d times", MAX_SETS);
@@ -157,23 +165,15 @@ static bool take_option(struct render_options *options, int option, const char *
 }
 
 static const struct option long_options[] = {
-    {"out", required_argument, NULL, 'o'},
-    {"camera", required_argument, NULL, 'c'},
-    {"eye", required_argument, NULL, 'e'},
-    {"target", required_argument, NULL, 't'},
-    {"up", required_argument, NULL, 'u'},
-    {"fov-y-deg", required_argument, NULL, 'f'},
-    {"size", required_argument, NULL, 's'},
-    {"gi", required_argument, NULL, 'g'},
-    {"preset", required_argument, NULL, 'p'},
-    {"view", required_argument, NULL, 'v'},
-    {"set", required_argument, NULL, 'S'},
-    {"frames", required_argument, NULL, 'n'},
-    {"move-eye", required_argument, NULL, 'm'},
-    {"stats", required_argument, NULL, 'j'},
-    {"gpu", required_argument, NULL, 'G'},
-    {"help", no_argument, NULL, 'h'},
-    {NULL, 0, NULL, 0},
+    {"out", required_argument, NULL, 'o'},      {"camera", required_argument, NULL, 'c'},
+    {"eye", required_argument, NULL, 'e'},      {"target", required_argument, NULL, 't'},
+    {"up", required_argument, NULL, 'u'},       {"fov-y-deg", required_argument, NULL, 'f'},
+    {"size", required_argument, NULL, 's'},     {"gi", required_argument, NULL, 'g'},
+    {"preset", required_argument, NULL, 'p'},   {"view", required_argument, NULL, 'v'},
+    {"set", required_argument, NULL, 'S'},      {"frames", required_argument, NULL, 'n'},
+    {"move-eye", required_argument, NULL, 'm'}, {"converge-first", no_argument, NULL, 'k'},
+    {"stats", required_argument, NULL, 'j'},    {"gpu", required_argument, NULL, 'G'},
+    {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
 };
 
 static bool check_options(const struct render_options *options, struct error *out_error)
@@ -186,6 +186,8 @@ static bool check_options(const struct render_options *options, struct error *ou
     if (!cli_output_of(options->out, &output))
         return error_set(out_error, "--out is \"%s\"; allowed extensions: .pfm, .png, .jpg",
                          options->out);
+    if (options->frames == 0 && (options->has_move || options->converge_first))
+        return error_set(out_error, "--move-eye and --converge-first need --frames");
     if (options->has_eye != options->has_target)
         return error_set(out_error, "--eye and --target are needed together");
     if (options->camera && options->has_eye)
@@ -198,7 +200,7 @@ static bool parse_options(int argc, char **argv, struct render_options *options,
                           struct error *out_error)
 {
     *options = (struct render_options){
-        .gpu = "auto", .width = 1280, .height = 720, .frames = 1, .up = {0.0f, 1.0f, 0.0f}};
+        .gpu = "auto", .width = 1280, .height = 720, .up = {0.0f, 1.0f, 0.0f}};
     *out_help = false;
     opterr = 0;
     optind = 1;
@@ -289,7 +291,7 @@ static void move_camera(struct view_camera *camera, const float move[3])
     }
 }
 
-static bool write_statistics(const char *path, struct cJSON *json, struct error *out_error)
+static bool write_json(const char *path, struct cJSON *json, struct error *out_error)
 {
     char *text = cJSON_Print(json);
     FILE *file = text ? fopen(path, "wb") : NULL;
@@ -300,45 +302,115 @@ static bool write_statistics(const char *path, struct cJSON *json, struct error 
     return done || error_set(out_error, "cannot write \"%s\"", path);
 }
 
-// Renders and measures the frames; the newest picture goes to the file.
+// What the frames of one command share.
+struct render_job {
+    const struct render_options *options;
+    struct renderer *renderer;
+    struct view *view;
+    const struct scene *scene;
+    struct frame_params *params;
+    struct cli_measurement measurement;
+    float convergence; // of the newest frame
+    bool converged;
+};
+
+// Frames until the picture has converged; measured if `measurement` is there, written if `path` is.
+static int render_still(struct render_job *job, struct cli_measurement *measurement,
+                        const char *path)
+{
+    struct error error = {""};
+    struct cli_still still = {.renderer = job->renderer,
+                              .view = job->view,
+                              .params = job->params,
+                              .max_frames = CLI_MAX_STILL_FRAMES,
+                              .measurement = measurement};
+    if (!cli_render_still(&still, &error))
+        return cli_fail(CLI_EXIT_RENDER, "%s", error.message);
+    job->convergence = still.pixels.convergence;
+    job->converged = still.converged;
+    if (!still.converged)
+        fprintf(stderr, "voxcast: warning: not converged after %u frames, but %.0f %% on the way\n",
+                still.frame_count, 100.0 * (double)still.pixels.convergence);
+    int status = 0;
+    if (path && !cli_write_picture(path, &still.pixels, &error))
+        status = cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
+    renderer_view_release(job->renderer, job->view);
+    return status;
+}
+
+// Renders one frame, measures it, and writes it if `path` is there.
+static int render_one(struct render_job *job, bool measured, const char *path)
+{
+    struct error error = {""};
+    struct frame_pixels pixels;
+    bool drawn = job->options->has_move
+                     ? cli_render_next_frame(job->renderer, job->view, job->params, &pixels, &error)
+                     : cli_render_frame(job->renderer, job->view, job->params, &pixels, &error);
+    if (!drawn)
+        return cli_fail(CLI_EXIT_RENDER, "%s", error.message);
+    int status = 0;
+    struct frame_statistics statistics;
+    renderer_view_get_statistics(job->renderer, job->view, &statistics);
+    job->convergence = pixels.convergence;
+    if (measured && !cli_measurement_add(&job->measurement, &statistics))
+        status = cli_fail(CLI_EXIT_RENDER, "out of memory");
+    if (status == 0 && path && !cli_write_picture(path, &pixels, &error))
+        status = cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
+    renderer_view_release(job->renderer, job->view);
+    return status;
+}
+
+// Exactly as many frames as were asked for; the newest is written.
+static int render_count(struct render_job *job)
+{
+    const struct render_options *options = job->options;
+    // One frame more, not measured, so that compiling shaders is not taken for rendering.
+    uint32_t warm_up = options->frames > 1 && !options->converge_first ? 1 : 0;
+    uint32_t count = options->frames + warm_up;
+    int status = 0;
+    if (options->converge_first) {
+        status = render_still(job, NULL, NULL);
+        move_camera(&job->params->camera, options->move);
+    }
+    for (uint32_t i = 0; i < count && status == 0; i++) {
+        status = render_one(job, i >= warm_up, i + 1 == count ? options->out : NULL);
+        move_camera(&job->params->camera, options->move);
+    }
+    return status;
+}
+
+static int write_statistics(const struct render_job *job)
+{
+    struct error error = {""};
+    struct frame_statistics statistics;
+    renderer_view_get_statistics(job->renderer, job->view, &statistics);
+    struct cJSON *json =
+        cli_statistics_json(&job->measurement, &statistics, renderer_get_info(job->renderer),
+                            job->scene, job->params->width, job->params->height);
+    cJSON_AddNumberToObject(json, "convergence", (double)job->convergence);
+    if (job->options->frames == 0)
+        cJSON_AddBoolToObject(json, "converged", job->converged);
+    bool done = write_json(job->options->stats, json, &error);
+    cJSON_Delete(json);
+    return done ? 0 : cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
+}
+
 static int render_frames(const struct render_options *options, struct renderer *renderer,
                          const struct scene *scene, struct frame_params *params)
 {
-    struct error error = {""};
-    struct view *view = renderer_view_create(renderer);
-    struct cli_measurement measurement = {0};
-    struct frame_pixels pixels;
-    int status = 0;
-    // One frame more, not measured, so that compiling shaders is not taken for rendering.
-    uint32_t warm_up = options->frames > 1 ? 1 : 0;
-    for (uint32_t i = 0; i < options->frames + warm_up && status == 0; i++) {
-        struct frame_statistics statistics;
-        if (!view || !cli_render_frame(renderer, view, params, &pixels, &error)) {
-            status = cli_fail(CLI_EXIT_RENDER, "%s", error.message);
-            break;
-        }
-        renderer_view_get_statistics(renderer, view, &statistics);
-        if (i >= warm_up && !cli_measurement_add(&measurement, &statistics))
-            status = cli_fail(CLI_EXIT_RENDER, "out of memory");
-        if (i + 1 == options->frames + warm_up && status == 0 &&
-            !cli_write_picture(options->out, &pixels, &error))
-            status = cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
-        renderer_view_release(renderer, view);
-        if (options->has_move)
-            move_camera(&params->camera, options->move);
-    }
-    if (status == 0 && options->stats) {
-        struct frame_statistics statistics;
-        renderer_view_get_statistics(renderer, view, &statistics);
-        struct cJSON *json =
-            cli_statistics_json(&measurement, &statistics, renderer_get_info(renderer), scene,
-                                params->width, params->height);
-        if (!write_statistics(options->stats, json, &error))
-            status = cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
-        cJSON_Delete(json);
-    }
-    cli_measurement_finish(&measurement);
-    renderer_view_destroy(renderer, &view);
+    struct render_job job = {.options = options,
+                             .renderer = renderer,
+                             .view = renderer_view_create(renderer),
+                             .scene = scene,
+                             .params = params};
+    if (!job.view)
+        return cli_fail(CLI_EXIT_RENDER, "out of memory");
+    int status = options->frames > 0 ? render_count(&job)
+                                     : render_still(&job, &job.measurement, options->out);
+    if (status == 0 && options->stats)
+        status = write_statistics(&job);
+    cli_measurement_finish(&job.measurement);
+    renderer_view_destroy(renderer, &job.view);
     return status;
 }
 
@@ -376,6 +448,8 @@ int cli_render(int argc, char **argv)
     params.camera = view.camera;
     params.quality = view.quality;
     params.debug_view = view.debug_view;
+    params.debug_level = view.debug_level;
+    params.debug_face = view.debug_face;
     cli_output_of(options.out, &params.output);
     renderer = renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);
     if (!renderer || !renderer_set_scene(renderer, scene, &error)) {

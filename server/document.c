@@ -122,6 +122,21 @@ static const struct binding bindings[] = {
     ENVIRONMENT(ground_color),
     ENVIRONMENT(rotation_rad),
     SETTINGS(gi_method),
+    SETTINGS(voxel_resolution),
+    SETTINGS(voxel_directions),
+    SETTINGS(clip_levels),
+    SETTINGS(cone_set),
+    SETTINGS(cone_step),
+    SETTINGS(gather_mode),
+    SETTINGS(bounces),
+    SETTINGS(indirect_intensity),
+    SETTINGS(ambient_occlusion),
+    SETTINGS(soft_shadows),
+    SETTINGS(indirect_specular),
+    SETTINGS(refraction),
+    SETTINGS(environment_light),
+    SETTINGS(voxelize_every_frame),
+    SETTINGS(levels_per_frame),
     SETTINGS(tonemap),
     SETTINGS(exposure_mode),
     SETTINGS(exposure_ev),
@@ -136,7 +151,11 @@ static const struct binding bindings[] = {
     VIEW(width),
     VIEW(height),
     VIEW(quality),
+    VIEW(adaptive),
+    VIEW(target_frame_ms),
     VIEW(debug_view),
+    VIEW(debug_level),
+    VIEW(debug_face),
     VIEW(paused),
     CAMERA(eye),
     CAMERA(target),
@@ -301,7 +320,9 @@ void view_options_init(struct view_options *view)
     *view = (struct view_options){
         .width = 640,
         .height = 360,
-        .quality = QUALITY_INTERACTIVE,
+        .quality = QUALITY_FINAL,
+        .adaptive = true,
+        .target_frame_ms = 100,
         .debug_view = DEBUG_VIEW_FINAL,
         .camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .fov_y_rad = 0.785398f},
     };
@@ -380,6 +401,11 @@ static bool check_record(enum parameter_group group, const union record *record,
         !record->environment.pixels)
         return rpc_error_field(error, "type", NULL,
                                "type: equirect needs an environment picture in the scene");
+    if (group == GROUP_SETTINGS && record->settings.cone_step > 0.0f &&
+        record->settings.cone_step < CONE_STEP_MIN)
+        return rpc_error_field(
+            error, "cone_step", NULL, "cone_step: %g is too short; allowed are 0 and %g to %g",
+            (double)record->settings.cone_step, (double)CONE_STEP_MIN, (double)CONE_STEP_MAX);
     if (group == GROUP_CAMERA) {
         const struct view_camera *camera = &record->camera;
         float distance = 0.0f;

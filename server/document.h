@@ -15,8 +15,12 @@
 struct view_options {
     uint32_t width;
     uint32_t height;
-    enum quality quality;
+    enum quality quality; // of a still picture, if adaptive; else of every one
+    bool adaptive;
+    uint32_t target_frame_ms;
     enum debug_view debug_view;
+    uint32_t debug_level;
+    enum voxel_face debug_face;
     bool paused;
     struct view_camera camera;
 };

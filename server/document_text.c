@@ -103,6 +103,6 @@ bool document_set_text(struct scene *scene, struct render_settings *settings,
     struct parameter_value parsed;
     if (!parameter_value_from_text(parameter, value, &parsed, &error) ||
         !document_set(&document, parameter->group, id, &parsed, 1, &error))
-        return error_set(out_error, "%s=%.100s: %.300s", key, value, error.message);
+        return error_set(out_error, "%s=%.100s: %.380s", key, value, error.message);
     return true;
 }

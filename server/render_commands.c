@@ -130,17 +130,29 @@ static void run_texture_get(struct render_thread *thread, const struct command *
         render_reply_error(thread, command, &error);
 }
 
+// Whether another picture is asked for, not only another quality of it.
+static bool shows_other_things(const struct view_options *a, const struct view_options *b)
+{
+    return memcmp(&a->camera, &b->camera, sizeof(a->camera)) != 0 || a->width != b->width ||
+           a->height != b->height || a->debug_view != b->debug_view ||
+           a->debug_level != b->debug_level || a->debug_face != b->debug_face;
+}
+
 static void run_view_or_camera(struct render_thread *thread, struct render_client *client,
                                struct command *command)
 {
     struct document document = render_document(thread, client);
     enum parameter_group group = method_get_group(command->method);
+    const struct view_options before = client->options;
     struct rpc_error error;
     if (!document_set(&document, group, 0, command->values, command->value_count, &error)) {
         render_reply_error(thread, command, &error);
         return;
     }
-    render_mark_dirty(thread, client);
+    if (shows_other_things(&before, &client->options))
+        render_mark_moving(thread, client);
+    else
+        render_mark_dirty(thread, client);
     cJSON *result;
     if (command->method == METHOD_VIEW_CONFIGURE) {
         result = document_json_group(&document, GROUP_VIEW, 0);
@@ -224,7 +236,7 @@ static void run_edit(struct render_thread *thread, struct render_client *client,
         thread->status.revision = thread->revision;
         pthread_mutex_unlock(&thread->status_mutex);
         broadcast_edit(thread, client, command, edit);
-        render_mark_dirty(thread, NULL);
+        render_mark_moving(thread, NULL);
     }
     cJSON_AddNumberToObject(result, "revision", (double)thread->revision);
     if (command->has_edit_id)

@@ -10,6 +10,7 @@
 #include "server/document.h"
 #include "server/edit.h"
 #include "server/file_watch.h"
+#include "server/quality_controller.h"
 #include "server/render_thread.h"
 #include "server/scene_loader.h"
 
@@ -22,8 +23,14 @@ struct render_client {
     uint64_t camera_revision;
     uint64_t edit_id;
     uint64_t frame_count;
-    bool dirty;                 // something may have changed since the newest drawn frame
-    uint64_t dirty_since_us;    // 0 when not dirty
+    bool dirty;              // something may have changed since the newest drawn frame
+    uint64_t dirty_since_us; // 0 when not dirty
+    struct quality_controller quality;
+    enum quality drawn_row;     // of the newest frame
+    enum quality drawn_wanted;  // that was wanted when it was drawn
+    bool drawn_moving;          // whether things moved then
+    bool drawn_to_refine;       // not to show a change
+    float convergence;          // of the newest collected frame, as its header tells
     bool drawing;               // drawn, not collected
     struct frame_header header; // of the frame being drawn
     uint64_t drawn_at_us;
@@ -60,6 +67,8 @@ struct render_thread {
     bool reload_wanted;
 
     uint32_t next_client;
+    uint64_t refined_at_us; // newest frame that only made a picture better
+    uint64_t refine_us;     // how long one took
     struct render_client clients[FRAME_STREAM_MAX_CLIENTS];
 };
 
@@ -90,9 +99,18 @@ void render_reset_camera(const struct scene *scene, struct view_camera *camera);
 struct render_client *render_find_client(struct render_thread *thread, uint32_t client_id);
 struct render_client *render_add_client(struct render_thread *thread, uint32_t client_id);
 void render_remove_gone_clients(struct render_thread *thread, bool all);
-void render_mark_dirty(struct render_thread *thread, struct render_client *client); // NULL: all
-bool render_wants_draw(struct render_thread *thread, uint32_t slot);
+
+// Something may look different to one client, or to all with NULL: frames are drawn until the
+// renderer says that nothing has changed. Moving does the same and lowers the quality for a while.
+void render_mark_dirty(struct render_thread *thread, struct render_client *client);
+void render_mark_moving(struct render_thread *thread, struct render_client *client);
+
+// Draws for the client whose turn it is, if any wants a frame. Pictures that only get better wait
+// for those that have changed.
 bool render_draw_next(struct render_thread *thread);
+
+// When render_draw_next() may have something to draw that it has not now, though nothing came in.
+uint64_t render_next_draw_us(struct render_thread *thread);
 
 // Hands finished frames to the JPEG workers. With `wait`, waits for one if any is under way. True
 // if there was one.

@@ -155,7 +155,7 @@ static bool swap_scene(struct render_thread *thread, struct scene *scene, struct
     snprintf(thread->status.scene, sizeof(thread->status.scene), "%s", thread->scene_label);
     pthread_mutex_unlock(&thread->status_mutex);
     send_loaded(thread, other_source);
-    render_mark_dirty(thread, NULL);
+    render_mark_moving(thread, NULL);
     log_warnings(thread);
     log_write(LOG_INFO, "scene_shown source=\"%s\" nodes=%u triangles=%llu warnings=%u",
               thread->scene_label, scene->node_count,

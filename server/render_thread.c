@@ -118,7 +118,7 @@ static uint64_t animate(struct render_thread *thread)
         scene_animate(scene, i, state->time_s);
     }
     thread->animated_at_us = now;
-    render_mark_dirty(thread, NULL);
+    render_mark_moving(thread, NULL);
     return now + ANIMATION_STEP_US;
 }
 
@@ -144,8 +144,10 @@ static void turn(struct render_thread *thread)
     uint64_t deadline_us = animate(thread);
     bool drew = render_draw_next(thread);
     bool collected = render_collect(thread, !drew);
-    if (!drew && !collected)
-        mailbox_wait(thread->params.mailbox, deadline_us);
+    if (drew || collected)
+        return;
+    uint64_t draw_us = render_next_draw_us(thread);
+    mailbox_wait(thread->params.mailbox, draw_us < deadline_us ? draw_us : deadline_us);
 }
 
 static void watch_shaders(struct render_thread *thread)

@@ -8,6 +8,9 @@
 
 #define STATISTICS_INTERVAL_US 500000u
 
+// While one client's picture moves, frames that only make others' better take at most this share.
+#define REFINE_SHARE 8u
+
 struct render_client *render_find_client(struct render_thread *thread, uint32_t client_id)
 {
     for (uint32_t i = 0; client_id && i < FRAME_STREAM_MAX_CLIENTS; i++) {
@@ -32,7 +35,7 @@ struct render_client *render_add_client(struct render_thread *thread, uint32_t c
         view_options_init(&client->options);
         if (thread->scene)
             render_reset_camera(thread->scene, &client->options.camera);
-        render_mark_dirty(thread, client);
+        render_mark_moving(thread, client);
         return client;
     }
     return NULL;
@@ -67,27 +70,86 @@ void render_mark_dirty(struct render_thread *thread, struct render_client *clien
     }
 }
 
-bool render_wants_draw(struct render_thread *thread, uint32_t slot)
+void render_mark_moving(struct render_thread *thread, struct render_client *client)
+{
+    uint64_t now = clock_now_us();
+    for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
+        struct render_client *each = &thread->clients[i];
+        if (each->client_id && (!client || each == client))
+            quality_controller_move(&each->quality, now);
+    }
+    render_mark_dirty(thread, client);
+}
+
+static struct quality_request request_of(const struct render_client *client)
+{
+    return (struct quality_request){.wanted = client->options.quality,
+                                    .adaptive = client->options.adaptive,
+                                    .target_frame_ms = client->options.target_frame_ms};
+}
+
+static enum quality choose_row(const struct render_client *client, uint64_t now)
+{
+    struct quality_request request = request_of(client);
+    return quality_controller_choose(&client->quality, &request, now);
+}
+
+static bool wants_draw(struct render_thread *thread, uint32_t slot, uint64_t now)
 {
     const struct render_client *client = &thread->clients[slot];
-    return client->client_id && thread->scene && client->dirty && !client->drawing &&
-           !client->options.paused && frame_stream_wants_frame(thread->params.stream, slot);
+    return client->client_id && thread->scene && !client->drawing && !client->options.paused &&
+           (client->dirty || choose_row(client, now) != client->drawn_row) &&
+           frame_stream_wants_frame(thread->params.stream, slot);
+}
+
+// Whether the client's picture does not show the newest state, rather than being rough only.
+static bool is_urgent(const struct render_client *client, uint64_t now)
+{
+    return client->dirty_since_us != 0 || quality_controller_is_moving(&client->quality, now);
+}
+
+// From when on frames may be drawn that only make a picture better: at once, if nobody moves.
+static uint64_t refine_from_us(const struct render_thread *thread, uint64_t now)
+{
+    for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
+        const struct render_client *client = &thread->clients[i];
+        if (client->client_id && !client->options.paused &&
+            quality_controller_is_moving(&client->quality, now))
+            return thread->refined_at_us + (REFINE_SHARE - 1) * thread->refine_us;
+    }
+    return 0;
+}
+
+uint64_t render_next_draw_us(struct render_thread *thread)
+{
+    uint64_t now = clock_now_us(), next = QUALITY_NEVER;
+    uint64_t refine_us = refine_from_us(thread, now);
+    for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
+        const struct render_client *client = &thread->clients[slot];
+        if (!client->client_id || client->options.paused)
+            continue;
+        struct quality_request request = request_of(client);
+        uint64_t change = quality_controller_next_us(&client->quality, &request, now);
+        // Time has passed since it was asked last: stillness may have come just now.
+        if (wants_draw(thread, slot, now))
+            change = is_urgent(client, now) || refine_us < now ? now : refine_us;
+        next = change < next ? change : next;
+    }
+    return next;
 }
 
 static void fill_header(struct render_thread *thread, struct render_client *client,
                         uint64_t start_us)
 {
     client->header = (struct frame_header){
-        .flags = FRAME_CONVERGED,
         .view_id = client->client_id,
         .frame_id = client->frame_count + 1,
         .scene_revision = thread->revision,
         .edit_id = client->edit_id,
         .camera_revision = client->camera_revision,
-        .quality = (uint8_t)client->options.quality,
+        .quality = (uint8_t)client->drawn_row,
         .debug_view = (uint8_t)client->options.debug_view,
         .epoch = (uint16_t)thread->epoch,
-        .convergence = 1.0f,
         .queue_us = client->dirty_since_us ? (uint32_t)(start_us - client->dirty_since_us) : 0,
         .draw_at_us = start_us,
     };
@@ -103,17 +165,37 @@ static void fail_draw(struct render_thread *thread, struct render_client *client
     render_notice(thread, client->client_id, "error", error->message);
 }
 
-static bool draw(struct render_thread *thread, uint32_t slot)
+// What "auto" means must not change with the quality, or the voxels would be made anew whenever the
+// camera starts and stops.
+static struct render_settings resolve_settings(const struct render_thread *thread)
+{
+    struct render_settings settings = thread->settings;
+    if (settings.voxel_resolution == VOXEL_RESOLUTION_AUTO)
+        settings.voxel_resolution = renderer_get_info(thread->renderer)->software
+                                        ? VOXEL_RESOLUTION_64
+                                        : VOXEL_RESOLUTION_128;
+    return settings;
+}
+
+static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
 {
     struct render_client *client = &thread->clients[slot];
+    client->drawn_row = choose_row(client, now);
+    client->drawn_wanted = client->options.quality;
+    client->drawn_moving = quality_controller_is_moving(&client->quality, now);
+    client->drawn_to_refine = !is_urgent(client, now);
+    if (client->drawn_to_refine)
+        thread->refined_at_us = now;
     struct frame_params params = {
         .camera = client->options.camera,
         .width = client->options.width,
         .height = client->options.height,
-        .quality = client->options.quality,
+        .quality = client->drawn_row,
         .debug_view = client->options.debug_view,
+        .debug_level = client->options.debug_level,
+        .debug_face = client->options.debug_face,
         .output = FRAME_OUTPUT_YCBCR,
-        .settings = thread->settings,
+        .settings = resolve_settings(thread),
         .user_id = client->frame_count + 1,
     };
     struct error error = {""};
@@ -128,6 +210,7 @@ static bool draw(struct render_thread *thread, uint32_t slot)
             render_send_statistics(thread, slot);
     } else if (result == RENDER_DRAWN) {
         fill_header(thread, client, start);
+        client->dirty = true; // until the renderer says that there is nothing more to draw
         client->dirty_since_us = 0;
         client->drawn_at_us = clock_now_us();
         client->header.draw_us = (uint32_t)(client->drawn_at_us - start);
@@ -138,18 +221,29 @@ static bool draw(struct render_thread *thread, uint32_t slot)
     return result == RENDER_DRAWN;
 }
 
-bool render_draw_next(struct render_thread *thread)
+// Draws for the next client, in turn, that is urgent or not.
+static bool draw_one_of(struct render_thread *thread, bool urgent)
 {
     for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
         uint32_t slot = (thread->next_client + i) % FRAME_STREAM_MAX_CLIENTS;
-        if (!render_wants_draw(thread, slot))
+        uint64_t now = clock_now_us();
+        if (is_urgent(&thread->clients[slot], now) != urgent || !wants_draw(thread, slot, now))
             continue;
-        if (draw(thread, slot)) {
+        if (draw(thread, slot, now)) {
             thread->next_client = slot + 1;
             return true;
         }
     }
     return false;
+}
+
+bool render_draw_next(struct render_thread *thread)
+{
+    uint64_t now = clock_now_us(), refine_us = refine_from_us(thread, now);
+    // While somebody moves, the others' turn comes seldom, but then it comes first.
+    if (refine_us > 0 && refine_us <= now && draw_one_of(thread, false))
+        return true;
+    return draw_one_of(thread, true) || (refine_us == 0 && draw_one_of(thread, false));
 }
 
 static void count_frame(struct render_thread *thread, struct render_client *client, uint64_t now)
@@ -169,6 +263,27 @@ static void count_frame(struct render_thread *thread, struct render_client *clie
     pthread_mutex_unlock(&thread->status_mutex);
 }
 
+static void take_convergence(struct render_client *client, const struct frame_pixels *pixels)
+{
+    client->convergence =
+        quality_convergence(client->drawn_row, client->drawn_wanted, pixels->convergence);
+    client->header.convergence = client->convergence;
+    if (client->convergence >= 1.0f)
+        client->header.flags |= FRAME_CONVERGED;
+    struct quality_request request = request_of(client);
+    quality_controller_take_frame(&client->quality, &request, client->drawn_row,
+                                  client->drawn_moving, pixels->frame_time_ms);
+}
+
+static void take_refine_time(struct render_thread *thread, const struct render_client *client,
+                             uint64_t now)
+{
+    if (!client->drawn_to_refine)
+        return;
+    thread->refined_at_us = now;
+    thread->refine_us = now - client->header.draw_at_us;
+}
+
 // False if the frame is not there yet.
 static bool collect(struct render_thread *thread, uint32_t slot, bool wait)
 {
@@ -184,6 +299,8 @@ static bool collect(struct render_thread *thread, uint32_t slot, bool wait)
     }
     uint64_t now = clock_now_us();
     client->header.readback_us = (uint32_t)(now - client->drawn_at_us);
+    take_convergence(client, &pixels);
+    take_refine_time(thread, client, now);
     jpeg_workers_submit(thread->params.workers, slot, &client->header, &pixels);
     renderer_view_release(thread->renderer, client->view);
     client->drawing = false;

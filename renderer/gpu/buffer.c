@@ -71,6 +71,13 @@ void gpu_buffer_write(struct gpu_buffer *buffer, size_t offset_bytes, size_t siz
         glNamedBufferSubData(buffer->name, (GLintptr)offset_bytes, (GLsizeiptr)size_bytes, data);
 }
 
+void gpu_buffer_fill(struct gpu_buffer *buffer, size_t offset_bytes, size_t size_bytes,
+                     uint32_t value)
+{
+    glClearNamedBufferSubData(buffer->name, GL_R32UI, (GLintptr)offset_bytes,
+                              (GLsizeiptr)size_bytes, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+}
+
 void gpu_buffer_clear(struct gpu_buffer *buffer)
 {
     glClearNamedBufferData(buffer->name, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, NULL);

@@ -19,6 +19,8 @@ size_t gpu_buffer_size_bytes(const struct gpu_buffer *buffer);
 void gpu_buffer_write(struct gpu_buffer *buffer, size_t offset_bytes, size_t size_bytes,
                       const void *data);
 void gpu_buffer_clear(struct gpu_buffer *buffer);
+void gpu_buffer_fill(struct gpu_buffer *buffer, size_t offset_bytes, size_t size_bytes,
+                     uint32_t value);
 void gpu_buffer_copy(struct gpu_buffer *target, size_t target_offset_bytes,
                      const struct gpu_buffer *source, size_t source_offset_bytes,
                      size_t size_bytes);

@@ -226,11 +226,11 @@ void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x
 }
 
 void gpu_dispatch_indirect(struct gpu *gpu, const struct gpu_program *program,
-                           const struct gpu_buffer *arguments)
+                           const struct gpu_buffer *arguments, size_t offset_bytes)
 {
     use_program(gpu, program);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu_buffer_name(arguments));
-    glDispatchComputeIndirect(0);
+    glDispatchComputeIndirect((GLintptr)offset_bytes);
 }
 
 void gpu_barrier(struct gpu *gpu)

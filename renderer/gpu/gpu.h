@@ -40,14 +40,15 @@ void gpu_pop_group(struct gpu *gpu);
 void gpu_bind_storage(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer);
 void gpu_bind_uniforms(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer);
 void gpu_bind_texture(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture);
+void gpu_bind_image(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture);
 
 // Runs a compute program over x * y * z groups.
 void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x, uint32_t y,
                   uint32_t z);
 
-// The same with the three counts read from the start of a buffer, as a shader left them there.
+// The same with the three counts read from a buffer, as a shader left them there.
 void gpu_dispatch_indirect(struct gpu *gpu, const struct gpu_program *program,
-                           const struct gpu_buffer *arguments);
+                           const struct gpu_buffer *arguments, size_t offset_bytes);
 
 // Makes writes of earlier commands visible to all later ones.
 void gpu_barrier(struct gpu *gpu);

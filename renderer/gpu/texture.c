@@ -56,18 +56,22 @@ struct gpu_texture *gpu_texture_create(struct gpu *gpu, const struct gpu_texture
     uint64_t bytes = 0;
     for (uint32_t level = 0; level < texture->params.levels; level++) {
         uint64_t width = params->width >> level, height = params->height >> level;
+        layers = params->depth ? params->depth : layers;
         bytes +=
             (width ? width : 1) * (height ? height : 1) * layers * formats[params->format].bytes;
     }
     gpu_account(gpu, &texture->allocation, params->label, bytes);
 
-    GLenum target = params->layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+    GLenum target = params->depth    ? GL_TEXTURE_3D
+                    : params->layers ? GL_TEXTURE_2D_ARRAY
+                                     : GL_TEXTURE_2D;
     glCreateTextures(target, 1, &texture->name);
     GLenum internal = formats[params->format].internal;
     GLsizei levels = (GLsizei)texture->params.levels;
-    if (params->layers)
+    if (params->depth || params->layers)
         glTextureStorage3D(texture->name, levels, internal, (GLsizei)params->width,
-                           (GLsizei)params->height, (GLsizei)params->layers);
+                           (GLsizei)params->height,
+                           (GLsizei)(params->depth ? params->depth : params->layers));
     else
         glTextureStorage2D(texture->name, levels, internal, (GLsizei)params->width,
                            (GLsizei)params->height);
@@ -105,6 +109,27 @@ void gpu_texture_write(struct gpu_texture *texture, uint32_t level, uint32_t lay
                             format, type, pixels);
     else
         glTextureSubImage2D(texture->name, (GLint)level, 0, 0, width, height, format, type, pixels);
+}
+
+void gpu_texture_clear(struct gpu_texture *texture)
+{
+    GLenum format = formats[texture->params.format].format;
+    GLenum type = formats[texture->params.format].type;
+    for (uint32_t level = 0; level < texture->params.levels; level++)
+        glClearTexImage(texture->name, (GLint)level, format, type, NULL);
+}
+
+void gpu_texture_read(const struct gpu_texture *texture, float *out_texels, size_t size_bytes)
+{
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glGetTextureImage(texture->name, 0, GL_RGBA, GL_FLOAT, (GLsizei)size_bytes, out_texels);
+}
+
+void gpu_bind_image(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture)
+{
+    (void)gpu;
+    glBindImageTexture(slot, texture->name, 0, GL_TRUE, 0, GL_READ_WRITE,
+                       formats[texture->params.format].internal);
 }
 
 void gpu_texture_generate_levels(struct gpu_texture *texture)

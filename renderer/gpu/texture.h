@@ -25,6 +25,7 @@ struct gpu_texture_params {
     uint32_t width;
     uint32_t height;
     uint32_t layers; // 0: plain 2D; else a 2D array
+    uint32_t depth;  // 0: as `layers` says; else a 3D texture
     uint32_t levels; // 0 means 1
     enum gpu_filter filter;
     bool repeat_u; // else clamp to edge
@@ -39,6 +40,12 @@ void gpu_texture_destroy(struct gpu_texture **texture);
 // (RGBA16F).
 void gpu_texture_write(struct gpu_texture *texture, uint32_t level, uint32_t layer,
                        const void *pixels);
+// Zeroes all levels.
+void gpu_texture_clear(struct gpu_texture *texture);
+
+// Copies a 3D texture to host memory and waits for the GPU: 4 floats a texel, x fastest; for tests.
+void gpu_texture_read(const struct gpu_texture *texture, float *out_texels, size_t size_bytes);
+
 void gpu_texture_generate_levels(struct gpu_texture *texture);
 uint32_t gpu_texture_name(const struct gpu_texture *texture);
 uint64_t gpu_texture_size_bytes(const struct gpu_texture *texture);

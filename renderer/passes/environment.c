@@ -22,7 +22,8 @@ static bool environment_run(struct frame *frame, const struct pass *pass, struct
 
 const struct pass environment_pass = {
     .name = "environment",
-    .effects_used = EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR),
+    .effects_used = EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR) |
+                    EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE),
     .use_count = 3,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

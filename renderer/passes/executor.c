@@ -7,14 +7,16 @@
 #include "renderer/view.h"
 
 const struct pass *const all_passes[PASS_COUNT] = {
-    &visibility_pass,  &gbuffer_pass,      &shadow_map_pass, &light_tiles_pass,
-    &environment_pass, &direct_light_pass, &emission_pass,   &transparency_pass,
-    &exposure_pass,    &debug_view_pass,   &tonemap_pass,    &readback_pass,
+    &visibility_pass,    &gbuffer_pass,      &shadow_map_pass,       &voxelize_pass,
+    &voxel_relight_pass, &voxel_filter_pass, &irradiance_cache_pass, &light_tiles_pass,
+    &environment_pass,   &direct_light_pass, &emission_pass,         &indirect_diffuse_pass,
+    &transparency_pass,  &exposure_pass,     &debug_view_pass,       &tonemap_pass,
+    &readback_pass,
 };
 
 static const char *const resource_names[RESOURCE_COUNT] = {
-    "ids",      "depth",     "gbuffer",  "shadow_map", "light_masks",
-    "radiance", "fragments", "exposure", "output",
+    "ids",        "depth",       "gbuffer",  "shadow_map", "voxels",   "voxel_radiance",
+    "irradiance", "light_masks", "radiance", "fragments",  "exposure", "output",
 };
 
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error)
@@ -60,7 +62,7 @@ const struct gpu_program *pass_program(const struct frame *frame, const struct p
                                        const char *shader, const char *extra,
                                        struct error *out_error)
 {
-    char defines[512];
+    char defines[1024];
     effects_write_defines(frame->plan.bits, pass->effects_used, frame->resident, defines,
                           sizeof(defines));
     size_t used = 0;
@@ -68,6 +70,17 @@ const struct gpu_program *pass_program(const struct frame *frame, const struct p
         used++;
     snprintf(defines + used, sizeof(defines) - used, "%s", extra);
     return gpu_program_get(frame->gpu, shader, defines, out_error);
+}
+
+const struct gpu_program *voxel_program(const struct frame *frame, const struct pass *pass,
+                                        const char *shader, const char *extra,
+                                        struct error *out_error)
+{
+    char defines[128];
+    bool isotropic = frame->volume->params.directions == VOXEL_ISOTROPIC;
+    snprintf(defines, sizeof(defines), "VOXEL_DIRECTIONS %d\n%s", isotropic ? 1 : VOXEL_FACES,
+             extra);
+    return pass_program(frame, pass, shader, defines, out_error);
 }
 
 void pass_dispatch_pixels(const struct frame *frame, const struct gpu_program *program)

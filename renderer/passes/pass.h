@@ -4,6 +4,7 @@
 #define VOXCAST_RENDERER_PASSES_PASS_H
 
 #include "renderer/effects.h"
+#include "renderer/gi/light.h"
 #include "renderer/gpu/gpu.h"
 #include "renderer/renderer.h"
 
@@ -15,6 +16,9 @@ enum resource {
     RESOURCE_DEPTH,
     RESOURCE_GBUFFER,
     RESOURCE_SHADOW_MAP,
+    RESOURCE_VOXELS,         // index, cells, surfels and lists
+    RESOURCE_VOXEL_RADIANCE, // what cones walk through
+    RESOURCE_IRRADIANCE,     // the cache in cells
     RESOURCE_LIGHT_MASKS,
     RESOURCE_RADIANCE,
     RESOURCE_FRAGMENTS,
@@ -44,7 +48,10 @@ struct frame {
     uint32_t height;
     uint32_t tiles_x;
     uint32_t tiles_y;
-    bool visibility_changed; // camera, size, geometry, placement or materials
+    bool visibility_changed;     // camera, size, geometry, placement or materials
+    struct voxel_volume *volume; // NULL where no effect needs voxels
+    struct voxel_light_work light_work;
+    enum gather_mode gather;
 };
 
 static inline bool frame_has(const struct frame *frame, enum effect effect)
@@ -72,11 +79,12 @@ struct pass {
     bool (*run)(struct frame *frame, const struct pass *pass, struct error *out_error);
 };
 
-extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, light_tiles_pass,
-    environment_pass, direct_light_pass, emission_pass, transparency_pass, exposure_pass,
-    debug_view_pass, tonemap_pass, readback_pass;
+extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, voxelize_pass,
+    voxel_relight_pass, voxel_filter_pass, irradiance_cache_pass, light_tiles_pass,
+    environment_pass, direct_light_pass, emission_pass, indirect_diffuse_pass, transparency_pass,
+    exposure_pass, debug_view_pass, tonemap_pass, readback_pass;
 
-#define PASS_COUNT 12
+#define PASS_COUNT 17
 extern const struct pass *const all_passes[PASS_COUNT];
 
 // Runs the passes that are needed, in order, timing each. False with a message if one fails.
@@ -90,6 +98,11 @@ bool passes_check(const struct pass *const *passes, uint32_t count, struct error
 const struct gpu_program *pass_program(const struct frame *frame, const struct pass *pass,
                                        const char *shader, const char *extra,
                                        struct error *out_error);
+
+// The same for shaders that touch voxels: adds how many directions a voxel has.
+const struct gpu_program *voxel_program(const struct frame *frame, const struct pass *pass,
+                                        const char *shader, const char *extra,
+                                        struct error *out_error);
 
 // Works out which cascades of the sun must be drawn; before the passes run.
 void shadow_map_place_cascades(struct frame *frame);

@@ -13,6 +13,9 @@ static bool readback_run(struct frame *frame, const struct pass *pass, struct er
     gpu_buffer_copy(view->ring[view->ring_next].pixels, 0, view->output, 0, bytes);
     gpu_buffer_copy(view->ring[view->ring_next].pixels, bytes, view->exposure, 0,
                     VIEW_EXPOSURE_BYTES);
+    if (frame->volume)
+        gpu_buffer_copy(view->ring[view->ring_next].pixels, bytes + VIEW_EXPOSURE_BYTES,
+                        frame->volume->counters, COUNTER_CACHE_LEFT * 4, VIEW_REPORT_BYTES);
     return true;
 }
 

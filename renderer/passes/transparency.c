@@ -42,7 +42,7 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
                           ((frame->height + GROUP_EDGE - 1) / GROUP_EDGE);
     gpu_dispatch(frame->gpu, tiles, (tile_count + LINEAR_GROUP - 1) / LINEAR_GROUP, 1, 1);
     gpu_barrier(frame->gpu);
-    gpu_dispatch_indirect(frame->gpu, shade, view->transparent_tiles);
+    gpu_dispatch_indirect(frame->gpu, shade, view->transparent_tiles, 0);
     return true;
 }
 

@@ -7,6 +7,10 @@
 
 // Emissive primitives of more triangles (lamps with shape) are not split up into planar emitters.
 #define MAX_EMITTER_TRIANGLES 12u
+// Emitters of at least this share of the surface of the scene's bounds are large: with global
+// illumination their light is gathered by cones, which see as much of them as is not hidden, while
+// a shadow map from their centre would not.
+#define LARGE_SHARE 0.03f
 
 static void emitted_radiance(const struct resident *resident, const struct scene_material *material,
                              float out_radiance[3])
@@ -123,21 +127,47 @@ static uint32_t add_instance(const struct resident *resident,
     return count;
 }
 
-uint32_t resident_find_area_lights(const struct resident *resident,
+static float bounds_area(const struct resident *resident)
+{
+    float size[3];
+    for (int axis = 0; axis < 3; axis++)
+        size[axis] = resident->bounds_max[axis] - resident->bounds_min[axis];
+    return 2.0f * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
+}
+
+static bool is_emissive(const struct scene_material *material)
+{
+    return material->emissive_strength > 0.0f && material->shading != SCENE_SHADING_UNLIT &&
+           (material->emissive[0] > 0.0f || material->emissive[1] > 0.0f ||
+            material->emissive[2] > 0.0f);
+}
+
+uint32_t resident_find_area_lights(struct resident *resident,
                                    struct area_light_block out_lights[MAX_AREA_LIGHTS])
 {
     const struct scene *scene = resident->scene;
+    float large = LARGE_SHARE * bounds_area(resident);
     uint32_t count = 0;
-    for (uint32_t i = 0; i < resident->counts.instances && count < MAX_AREA_LIGHTS; i++) {
-        const struct resident_instance *instance = &resident->instances[i];
+    resident->counts.large_area_lights = 0;
+    for (uint32_t i = 0; i < resident->counts.instances; i++) {
+        struct resident_instance *instance = &resident->instances[i];
         const struct scene_material *material =
             &scene->materials[scene->primitives[instance->primitive].material];
-        bool emissive = material->emissive_strength > 0.0f &&
-                        (material->emissive[0] > 0.0f || material->emissive[1] > 0.0f ||
-                         material->emissive[2] > 0.0f);
-        if (instance->visible && emissive && material->shading != SCENE_SHADING_UNLIT &&
-            instance->index_count / 3 <= MAX_EMITTER_TRIANGLES)
-            count = add_instance(resident, instance, material, count, out_lights);
+        instance->emits_directly = false;
+        instance->large_emitter = false;
+        if (!instance->visible || !is_emissive(material) || count == MAX_AREA_LIGHTS ||
+            instance->index_count / 3 > MAX_EMITTER_TRIANGLES)
+            continue;
+        uint32_t first = count;
+        count = add_instance(resident, instance, material, count, out_lights);
+        float area = 0.0f;
+        for (uint32_t j = first; j < count; j++)
+            area += out_lights[j].radiance[3];
+        instance->emits_directly = true;
+        instance->large_emitter = area >= large;
+        for (uint32_t j = first; j < count && instance->large_emitter; j++)
+            out_lights[j].center[3] = 1.0f;
+        resident->counts.large_area_lights += instance->large_emitter ? count - first : 0;
     }
     return count;
 }

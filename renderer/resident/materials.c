@@ -74,6 +74,8 @@ static void fill_material_block(struct material_block *block, const struct scene
     };
     block->info[0] = shading[material->shading] |
                      (material->alpha_mode == SCENE_ALPHA_BLEND ? MATERIAL_ALPHA_BLEND : 0) |
+                     (material->alpha_mode == SCENE_ALPHA_MASK ? MATERIAL_ALPHA_MASK : 0) |
+                     (material->double_sided ? MATERIAL_DOUBLE_SIDED : 0) |
                      (material->ior == 1.0f ? MATERIAL_IOR_ONE : 0);
 }
 

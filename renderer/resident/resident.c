@@ -83,6 +83,19 @@ bool resident_update(struct resident *resident, struct error *out_error)
     return true;
 }
 
+static bool light_has_size(const struct scene_light *light)
+{
+    return !light->removed && light->enabled && light->casts_shadow && light->radius_m > 0.0f &&
+           light->intensity > 0.0f;
+}
+
+static bool material_is_emissive(const struct scene_material *material)
+{
+    return material->emissive_strength > 0.0f &&
+           (material->emissive[0] > 0.0f || material->emissive[1] > 0.0f ||
+            material->emissive[2] > 0.0f);
+}
+
 void resident_count_materials(struct resident *resident)
 {
     const struct scene *scene = resident->scene;
@@ -92,6 +105,12 @@ void resident_count_materials(struct resident *resident)
     counts->transparent_materials = 0;
     counts->blinn_phong_materials = 0;
     counts->specular_materials = 0;
+    counts->emissive_materials = 0;
+    counts->reflective_materials = 0;
+    counts->transmissive_materials = 0;
+    counts->sized_lights = counts->area_lights - counts->large_area_lights;
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        counts->sized_lights += light_has_size(&scene->lights[i]);
     bool *counted = calloc(scene->material_count ? scene->material_count : 1, sizeof(bool));
     if (!counted)
         return;
@@ -112,6 +131,12 @@ void resident_count_materials(struct resident *resident)
         counts->blinn_phong_materials += material->shading == SCENE_SHADING_BLINN_PHONG;
         bool dielectric = material->ior != 1.0f && material->specular > 0.0f;
         counts->specular_materials += material->metallic > 0.0f || dielectric;
+        bool lit = material->shading != SCENE_SHADING_UNLIT;
+        bool colored = material->base_color[0] > 0.0f || material->base_color[1] > 0.0f ||
+                       material->base_color[2] > 0.0f;
+        counts->reflective_materials += lit && (colored || dielectric);
+        counts->emissive_materials += lit && material_is_emissive(material);
+        counts->transmissive_materials += lit && material->transmission > 0.0f;
     }
     free(counted);
 }

@@ -40,6 +40,8 @@ struct resident_instance {
     float scale;            // largest stretch of the placement
     uint8_t group;          // kind * DRAW_CULL_COUNT + cull
     bool visible;
+    bool emits_directly; // all its emission reaches others as that of planar emitters
+    bool large_emitter;  // of those, one that voxels hold better: see area_lights.c
     float bounds_min[3]; // world
     float bounds_max[3];
 };
@@ -49,6 +51,7 @@ struct resident_counts {
     uint32_t lights; // enabled punctual lights
     uint32_t ranged_lights;
     uint32_t area_lights;
+    uint32_t large_area_lights; // of those: see area_lights.c
     uint32_t shadow_layers;
     uint32_t flat_shadows;       // lights with one view
     uint32_t cube_shadows;       // lights with six
@@ -58,6 +61,10 @@ struct resident_counts {
     uint32_t transparent_materials;
     uint32_t blinn_phong_materials;
     uint32_t specular_materials;
+    uint32_t emissive_materials;
+    uint32_t reflective_materials; // that pass light on at all
+    uint32_t transmissive_materials;
+    uint32_t sized_lights; // punctual lights with a radius, and small planar emitters
 };
 
 // Pictures of one colour space: an array per edge, and where each of the scene's images went.
@@ -152,7 +159,7 @@ void resident_directional_view(const struct resident *resident, const float axis
                                struct shadow_view_block *out_view);
 
 // Finds the planar emitters among the visible instances. Returns their number.
-uint32_t resident_find_area_lights(const struct resident *resident,
+uint32_t resident_find_area_lights(struct resident *resident,
                                    struct area_light_block out_lights[MAX_AREA_LIGHTS]);
 
 #endif

@@ -150,6 +150,11 @@ vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reve
 
 vec3 area_light(surface s, area_light_block light)
 {
+#if VOXEL_LIGHT
+    // Cones gather the light of large emitters.
+    if (light.center.w > 0.0)
+        return vec3(0.0);
+#endif
     float side = dot(light.normal.xyz, s.position - light.center.xyz);
     bool reversed = side < 0.0;
     if (reversed && light.corners[0].w == 0.0)

@@ -10,6 +10,10 @@ layout(std430, binding = BIND_SHADOW_VIEWS) readonly buffer shadow_view_storage
 // Layers of the scene's lamps, then those of the views' cascades.
 layout(binding = UNIT_SHADOW_MAP) uniform sampler2DArrayShadow shadow_map;
 
+#ifndef SHADOW_TAPS
+#define SHADOW_TAPS frame.options.z
+#endif
+
 const float PCF_RADIUS_TEXELS = 1.5;
 // Rotation by the golden angle, pi (3 - sqrt 5), which spaces a Vogel disk evenly.
 const mat2 GOLDEN_ROTATION = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
@@ -17,7 +21,7 @@ const mat2 GOLDEN_ROTATION = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688)
 // Mean of comparisons on a Vogel disk around `at`: uv, layer, reference depth.
 float filtered_comparison(vec4 at)
 {
-    uint taps = frame.options.z;
+    uint taps = SHADOW_TAPS;
     float texel = 1.0 / float(textureSize(shadow_map, 0).x);
     float lit = 0.0;
     float scale = taps > 1u ? PCF_RADIUS_TEXELS * texel * inversesqrt(float(taps)) : 0.0;
@@ -112,8 +116,10 @@ float shadow_visibility(uvec4 shadow, vec3 origin, vec3 position, vec3 normal, v
 #if FLAT_SHADOWS
     if (shadow.y == 1u) {
         at = project_to_shadow(shadow.x, position, normal, to_light, inside);
+#ifndef VIEWLESS // cascades are a view's own
         if (shadow.w != 0u)
             refine_by_cascade(at);
+#endif
     }
 #endif
 #if CUBE_SHADOWS

@@ -15,7 +15,9 @@ void main()
     vec3 sum = s.emission;
     if (s.shading == SHADE_BACKGROUND)
         sum = environment_radiance(-s.view);
+#if !VOXEL_LIGHT // whose cones see the environment
     else if (s.shading != SHADE_UNLIT)
         sum += environment_light(s);
+#endif
     radiance[pixel_index(pixel)] = vec4(sum, 1.0);
 }

@@ -3,32 +3,48 @@
 #define VOXCAST_SHADERS_SHARED_BINDINGS_H
 
 // Uniform blocks
-#define BIND_FRAME 0
+#define BIND_FRAME  0
+#define BIND_VOXELS 1
 
 // Shader storage blocks
-#define BIND_INSTANCES    0
-#define BIND_ID_BLOCKS    1
-#define BIND_VERTICES     2
-#define BIND_INDICES      3
-#define BIND_MATERIALS    4
-#define BIND_TEXTURES     5
-#define BIND_LIGHTS       6
-#define BIND_AREA_LIGHTS  7
-#define BIND_SHADOW_VIEWS 8
-#define BIND_GBUFFER      9
-#define BIND_RADIANCE     10
-#define BIND_LIGHT_MASKS  11
-#define BIND_OUTPUT       12
-#define BIND_EXPOSURE     13
-#define BIND_FRAGMENTS    14
-#define BIND_ENVIRONMENT  15
-#define BIND_TILES        16
-#define STORAGE_BINDINGS  17
+#define BIND_INSTANCES      0
+#define BIND_ID_BLOCKS      1
+#define BIND_VERTICES       2
+#define BIND_INDICES        3
+#define BIND_MATERIALS      4
+#define BIND_TEXTURES       5
+#define BIND_LIGHTS         6
+#define BIND_AREA_LIGHTS    7
+#define BIND_SHADOW_VIEWS   8
+#define BIND_GBUFFER        9
+#define BIND_RADIANCE       10
+#define BIND_LIGHT_MASKS    11
+#define BIND_OUTPUT         12
+#define BIND_EXPOSURE       13
+#define BIND_FRAGMENTS      14
+#define BIND_ENVIRONMENT    15
+#define BIND_TILES          16
+#define BIND_VOXEL_INDEX    17
+#define BIND_CELLS          18
+#define BIND_SURFELS        19
+#define BIND_VOXEL_COUNTERS 20
+#define BIND_VOXEL_FREE     21
+#define BIND_VOXEL_WORK     22
+#define BIND_VOXEL_TILES    23
+#define BIND_VOXEL_LISTS    24
+#define BIND_VOXEL_SURFACES 25
+#define BIND_CACHE_QUEUE    26
+#define BIND_INDIRECT       27
+#define STORAGE_BINDINGS    28
+
+// Image units
+#define IMAGE_VOXEL_RADIANCE 0
 
 // Texture units
 #define UNIT_IDS              0
 #define UNIT_DEPTH            1
 #define UNIT_SHADOW_MAP       2
+#define UNIT_VOXEL_RADIANCE   3
 #define UNIT_ENVIRONMENT      4
 #define UNIT_COLOR_CLASSES    5
 #define UNIT_DATA_CLASSES     10
@@ -79,7 +95,9 @@
 #define SHADE_BACKGROUND  3u
 
 #define MATERIAL_SHADING_MASK 3u
+#define MATERIAL_ALPHA_MASK   8u
 #define MATERIAL_ALPHA_BLEND  16u
+#define MATERIAL_DOUBLE_SIDED 32u
 #define MATERIAL_IOR_ONE      64u // no dielectric reflection at any angle
 
 #define TEXTURE_SLOTS              8

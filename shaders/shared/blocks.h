@@ -61,7 +61,7 @@ struct light_block {
 struct area_light_block {
     vec4 corners[4]; // world; w of the first: 1 if both sides emit
     vec4 radiance;   // cd/m^2; w: area in m^2
-    vec4 center;     // w unused
+    vec4 center;     // w: 1 if voxels hold its light better, where there are any
     vec4 normal;     // unit
     uvec4 shadow;    // as light_block
 };

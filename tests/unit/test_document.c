@@ -63,7 +63,7 @@ static struct parameter_value sample(const struct parameter *parameter, int whic
         value.numbers[i] = parameter->min + share * (fmin(parameter->max, 50.0) - parameter->min);
     }
     if (parameter->type == PARAMETER_INT)
-        value.numbers[0] = 100.0 + which;
+        value.numbers[0] = fmin(parameter->max, 100.0) - 1.0 + which;
     if (parameter->type == PARAMETER_BOOL)
         value.numbers[0] = which;
     if (parameter->type == PARAMETER_ENUM)
@@ -98,8 +98,9 @@ static void setting_one_changes_no_other(void **state)
     struct fixture *fixture = *state;
     for (size_t i = 0; i < parameter_count(); i++) {
         const struct parameter *changed = parameter_at(i);
-        struct parameter_value before[64], after;
+        struct parameter_value before[128], after;
         size_t count = 0;
+        assert_true(parameter_count() <= 128);
         for (size_t p = 0; p < parameter_count(); p++)
             document_get(&fixture->document, parameter_at(p), 0, &before[count++]);
         struct parameter_value set = sample(changed, 1);
@@ -141,6 +142,10 @@ static void text_keys_reach_their_fields(void **state)
         {"environment.type", "constant"},
         {"exposure_ev", "1"},
         {"settings.tonemap", "aces"},
+        {"gi_method", "grid"},
+        {"voxel_resolution", "128"},
+        {"cone_step", "0.25"},
+        {"debug_face", "-y"},
         {"quality", "high"},
         {"camera.eye", "1,2,3"},
     };
@@ -158,12 +163,18 @@ static void text_keys_reach_their_fields(void **state)
     assert_int_equal(fixture->scene->environment.type, SCENE_ENVIRONMENT_CONSTANT);
     assert_true(fixture->settings.exposure_ev == 1.0f);
     assert_int_equal(fixture->settings.tonemap, TONEMAP_ACES);
+    assert_int_equal(fixture->settings.gi_method, GI_METHOD_GRID);
+    assert_int_equal(fixture->settings.voxel_resolution, VOXEL_RESOLUTION_128);
+    assert_true(fixture->settings.cone_step == 0.25f);
+    assert_int_equal(fixture->view.debug_face, VOXEL_FACE_NEGATIVE_Y);
     assert_int_equal(fixture->view.quality, QUALITY_HIGH);
     assert_true(fixture->view.camera.eye[1] == 2.0f);
     refuse(fixture, "lights.7.intensity", "1", "no such light (it has 1)");
     refuse(fixture, "lights.0.intensity", "-1", "allowed are 0 to 1e+07");
     refuse(fixture, "lights.0.intensity", "nan", "out of range");
     refuse(fixture, "quality", "best", "draft, interactive, high, final");
+    refuse(fixture, "cone_step", "0.1", "allowed are 0 and 0.25 to 2");
+    refuse(fixture, "cone_step", "2.5", "allowed are 0 to 2");
     refuse(fixture, "lights.0", "1", "want lights.ID.FIELD");
     refuse(fixture, "colour", "1", "no such key");
     refuse(fixture, "environment.type", "equirect", "needs an environment picture");

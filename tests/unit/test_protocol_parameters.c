@@ -94,11 +94,32 @@ static void enums_match_the_renderer(void **state)
 {
     (void)state;
     check_names("settings", "gi_method", gi_method_names, GI_METHOD_COUNT);
+    check_names("settings", "voxel_resolution", voxel_resolution_names, VOXEL_RESOLUTION_COUNT);
+    check_names("settings", "voxel_directions", voxel_directions_names, VOXEL_DIRECTIONS_COUNT);
+    check_names("settings", "cone_set", cone_set_names, CONE_SET_COUNT);
+    check_names("settings", "gather_mode", gather_mode_names, GATHER_COUNT);
+    check_names("settings", "levels_per_frame", levels_per_frame_names, LEVELS_PER_FRAME_COUNT);
     check_names("settings", "tonemap", tonemap_names, TONEMAP_COUNT);
     check_names("settings", "exposure_mode", exposure_mode_names, EXPOSURE_MODE_COUNT);
     check_names("settings", "shading_model", shading_model_names, SHADING_MODEL_COUNT);
     check_names("view", "debug_view", debug_view_names, DEBUG_VIEW_COUNT);
+    check_names("view", "debug_face", voxel_face_names, VOXEL_FACE_COUNT);
     check_names("view", "quality", quality_names, QUALITY_COUNT);
+}
+
+static void check_range(const char *name, double max)
+{
+    const struct parameter *parameter = parameter_find(GROUP_SETTINGS, name);
+    assert_non_null(parameter);
+    assert_true(parameter->min == 0.0 && parameter->max == max);
+}
+
+static void ranges_match_the_renderer(void **state)
+{
+    (void)state;
+    check_range("clip_levels", CLIP_MAX_LEVELS);
+    check_range("bounces", GI_MAX_BOUNCES);
+    check_range("cone_step", CONE_STEP_MAX);
 }
 
 static void refuse(enum parameter_group group, const char *name, const char *json,
@@ -160,6 +181,7 @@ int main(void)
         cmocka_unit_test(defaults_are_valid),
         cmocka_unit_test(names_are_unique),
         cmocka_unit_test(enums_match_the_renderer),
+        cmocka_unit_test(ranges_match_the_renderer),
         cmocka_unit_test(wrong_values_are_refused),
         cmocka_unit_test(text_is_read_as_people_type_it),
     };

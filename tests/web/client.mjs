@@ -46,6 +46,7 @@ export function decodeHeader(data) {
   return {
     magic: data.subarray(0, 4).toString('latin1'),
     headerSize: view.getUint16(4, true),
+    converged: (view.getUint16(6, true) & 1) !== 0,
     viewId: view.getUint32(8, true),
     jpegBytes: view.getUint32(12, true),
     frameId: u64(16),
@@ -54,6 +55,8 @@ export function decodeHeader(data) {
     cameraRevision: u64(40),
     width: view.getUint16(48, true),
     height: view.getUint16(50, true),
+    quality: view.getUint8(52),
+    convergence: view.getFloat32(56, true),
     sentAtUs: u64(88),
     drawAtUs: u64(80),
   };

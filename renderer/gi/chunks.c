@@ -1,0 +1,181 @@
+// What voxelization has to work through: regions of voxels, the triangles near them, and the table
+// of surfaces.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/gi/volume.h"
+
+// Up to so many instances each has surfels of its own; beyond, those of equal material share them,
+// so that no voxel's list grows without bound.
+#define MAX_OWN_SURFACES 4096u
+
+static bool reserve(struct voxel_volume *volume, size_t words)
+{
+    if (words <= volume->scratch_words)
+        return true;
+    uint32_t *larger = realloc(volume->scratch, 2 * words * sizeof(*larger));
+    if (!larger)
+        return false;
+    volume->scratch = larger;
+    volume->scratch_words = 2 * words;
+    return true;
+}
+
+static bool box_meets(const struct voxel_volume *volume, const struct voxel_level *level,
+                      const struct voxel_box *box, const float low[3], const float high[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        double from = (low[axis] - volume->anchor[axis]) / level->voxel_edge_m;
+        double to = (high[axis] - volume->anchor[axis]) / level->voxel_edge_m;
+        // NaN meets nothing.
+        if (!(from <= box->high[axis] + 0.01 && to >= box->low[axis] - 0.01))
+            return false;
+    }
+    return true;
+}
+
+static void cluster_bounds(const float *m, const struct resident_cluster *cluster, float scale,
+                           float out_low[3], float out_high[3])
+{
+    const float *c = cluster->center;
+    float radius = cluster->radius * scale;
+    for (int row = 0; row < 3; row++) {
+        float center = m[row] * c[0] + m[4 + row] * c[1] + m[8 + row] * c[2] + m[12 + row];
+        out_low[row] = center - radius;
+        out_high[row] = center + radius;
+    }
+}
+
+static bool append_chunk(struct voxel_volume *volume, uint32_t instance, uint32_t first,
+                         uint32_t count, uint32_t region)
+{
+    size_t at = (size_t)volume->chunk_count * 4;
+    if (!reserve(volume, at + 4))
+        return false;
+    memcpy(volume->scratch + at, (uvec4){instance, first, count, region}, sizeof(uvec4));
+    volume->chunk_count++;
+    return true;
+}
+
+static bool add_instance_chunks(struct voxel_volume *volume, const struct resident *resident,
+                                uint32_t number, uint32_t level, const struct voxel_box *box)
+{
+    const struct resident_instance *instance = &resident->instances[number];
+    const float *matrix = resident->scene->nodes[instance->node].world_from_local;
+    uint32_t triangles = instance->index_count / 3;
+    for (uint32_t at = 0; at < triangles; at += VOXEL_CHUNK) {
+        const struct resident_cluster *cluster =
+            &resident->clusters[instance->cluster_first + (at >> ID_BLOCK_BITS)];
+        float low[3], high[3];
+        cluster_bounds(matrix, cluster, instance->scale, low, high);
+        uint32_t count = triangles - at < VOXEL_CHUNK ? triangles - at : VOXEL_CHUNK;
+        if (box_meets(volume, &volume->levels[level], box, low, high) &&
+            !append_chunk(volume, number, at, count, volume->region_count))
+            return false;
+    }
+    return true;
+}
+
+// As voxel_region in shaders/lib/voxel_work.glsl.
+struct region_block {
+    ivec4 low;  // w: level
+    ivec4 size; // w: number of the first voxel
+};
+
+static bool add_regions(struct voxel_volume *volume, const struct resident *resident,
+                        struct region_block *regions)
+{
+    for (uint32_t level = 0; level < volume->lit_levels; level++) {
+        const struct voxel_boxes *dirty = &volume->dirty[level];
+        for (uint32_t i = 0; i < dirty->count; i++) {
+            const struct voxel_box *box = &dirty->boxes[i];
+            struct region_block *region = &regions[volume->region_count];
+            uint32_t voxels = 1;
+            for (int axis = 0; axis < 3; axis++) {
+                region->low[axis] = box->low[axis];
+                region->size[axis] = box->high[axis] - box->low[axis];
+                voxels *= (uint32_t)region->size[axis];
+            }
+            region->low[3] = (int32_t)level;
+            region->size[3] = (int32_t)volume->region_voxels;
+            for (uint32_t j = 0; j < resident->counts.instances; j++) {
+                const struct resident_instance *instance = &resident->instances[j];
+                if (instance->visible &&
+                    box_meets(volume, &volume->levels[level], box, instance->bounds_min,
+                              instance->bounds_max) &&
+                    !add_instance_chunks(volume, resident, j, level, box))
+                    return false;
+            }
+            volume->region_voxels += voxels;
+            volume->region_count++;
+        }
+    }
+    return true;
+}
+
+static uint64_t hash_words(const uint32_t *words, size_t count)
+{
+    uint64_t hash = 1469598103934665603ull;
+    for (size_t i = 0; i < count; i++)
+        hash = (hash ^ words[i]) * 1099511628211ull;
+    return hash;
+}
+
+// For each instance its surface, then for each surface its material and flags.
+static bool write_surfaces(struct voxel_volume *volume, const struct resident *resident)
+{
+    uint32_t instances = resident->counts.instances;
+    uint32_t materials = resident->scene->material_count;
+    bool own = instances <= MAX_OWN_SURFACES;
+    size_t words = (size_t)instances + (own ? instances : materials);
+    uint32_t *table = calloc(words ? words : 1, sizeof(*table));
+    if (!table)
+        return false;
+    for (uint32_t i = 0; i < materials && !own; i++)
+        table[instances + i] = i | SURFACE_LIT_DIRECTLY;
+    for (uint32_t i = 0; i < instances; i++) {
+        const struct resident_instance *instance = &resident->instances[i];
+        uint32_t material = resident->scene->primitives[instance->primitive].material;
+        bool directly = instance->emits_directly && !instance->large_emitter;
+        table[i] = own ? i : material;
+        if (own)
+            table[instances + i] = material | (directly ? SURFACE_LIT_DIRECTLY : 0);
+        else if (!directly)
+            table[instances + material] &= ~SURFACE_LIT_DIRECTLY;
+    }
+    uint64_t hash = hash_words(table, words);
+    bool done = true;
+    if (!volume->surfaces || hash != volume->surfaces_hash) {
+        done = gpu_buffer_ensure(volume->gpu, &volume->surfaces, "gi.surfaces", GPU_BUFFER_STATIC,
+                                 words * sizeof(*table));
+        if (done)
+            gpu_buffer_write(volume->surfaces, 0, words * sizeof(*table), table);
+        volume->surfaces_hash = hash;
+    }
+    free(table);
+    return done;
+}
+
+bool voxel_volume_prepare_work(struct voxel_volume *volume, const struct resident *resident)
+{
+    struct region_block regions[VOXEL_MAX_REGIONS];
+    memset(regions, 0, sizeof(regions));
+    volume->region_count = 0;
+    volume->region_voxels = 0;
+    volume->chunk_count = 0;
+    if (!write_surfaces(volume, resident) || !add_regions(volume, resident, regions))
+        return false;
+    if (!volume->work || volume->chunk_count > volume->chunk_capacity) {
+        volume->chunk_capacity = 2 * volume->chunk_count + 64;
+        if (!gpu_buffer_ensure(volume->gpu, &volume->work, "gi.work", GPU_BUFFER_STATIC,
+                               sizeof(regions) + (size_t)volume->chunk_capacity * sizeof(uvec4)))
+            return false;
+    }
+    if (volume->region_count > 0) {
+        gpu_buffer_write(volume->work, 0, sizeof(regions), regions);
+        gpu_buffer_write(volume->work, sizeof(regions), volume->chunk_count * sizeof(uvec4),
+                         volume->scratch);
+    }
+    return true;
+}

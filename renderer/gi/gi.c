@@ -1,0 +1,243 @@
+#include "renderer/gi/gi.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "renderer/gi/cones.h"
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+// Stored radiance of the brightest lit surface should lie about here, far from either end of what
+// half floats hold.
+#define STORED_PEAK 256.0f
+// Ambient occlusion counts what is nearer than this share of the scene's diagonal.
+#define OCCLUSION_SHARE 0.05f
+// Cones start so many voxels above the surface.
+#define START_VOXELS           1.0f
+#define START_VOXELS_ISOTROPIC 2.0f
+// Cones of the cache where the settings do not say.
+#define CACHE_CONES CONE_SET_16
+#define CACHE_STEP  1.0f
+
+void gi_init(struct gi *gi, struct gpu *gpu)
+{
+    *gi = (struct gi){.gpu = gpu, .next_serial = 1};
+}
+
+void gi_release_all(struct gi *gi)
+{
+    for (uint32_t i = 0; i < gi->volume_count; i++)
+        voxel_volume_destroy(&gi->volumes[i].volume);
+    gi->volume_count = 0;
+}
+
+void gi_finish(struct gi *gi)
+{
+    gi_release_all(gi);
+}
+
+void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count)
+{
+    for (uint32_t i = 0; i < gi->volume_count;) {
+        bool used = false;
+        for (uint32_t j = 0; j < view_count; j++)
+            used = used || views[j]->volume_serial == gi->volumes[i].serial;
+        if (used) {
+            i++;
+            continue;
+        }
+        voxel_volume_destroy(&gi->volumes[i].volume);
+        gi->volumes[i] = gi->volumes[--gi->volume_count];
+    }
+}
+
+struct voxel_volume *gi_find(const struct gi *gi, uint64_t serial)
+{
+    for (uint32_t i = 0; i < gi->volume_count; i++)
+        if (gi->volumes[i].serial == serial)
+            return gi->volumes[i].volume;
+    return NULL;
+}
+
+static enum voxel_resolution resolution_of(const struct frame *frame)
+{
+    const struct render_settings *settings = &frame->params->settings;
+    enum voxel_resolution resolution = settings->voxel_resolution;
+    if (resolution == VOXEL_RESOLUTION_AUTO) {
+        resolution = frame->quality->voxel_resolution;
+        if (!gpu_get_info(frame->gpu)->software && resolution < VOXEL_RESOLUTION_128)
+            resolution = VOXEL_RESOLUTION_128;
+    }
+    if (settings->gi_method == GI_METHOD_CLIPMAP && resolution > VOXEL_RESOLUTION_128)
+        resolution = VOXEL_RESOLUTION_128;
+    return resolution;
+}
+
+static struct voxel_volume_params volume_params(const struct frame *frame)
+{
+    const struct render_settings *settings = &frame->params->settings;
+    return (struct voxel_volume_params){
+        .method = settings->gi_method,
+        .edge = 32u << resolution_of(frame),
+        .clip_levels = settings->gi_method == GI_METHOD_CLIPMAP ? settings->clip_levels : 0,
+        .directions = settings->voxel_directions,
+    };
+}
+
+static bool same_params(const struct voxel_volume_params *a, const struct voxel_volume_params *b)
+{
+    return a->method == b->method && a->edge == b->edge && a->clip_levels == b->clip_levels &&
+           a->directions == b->directions;
+}
+
+// The volume to draw with: a view's own clipmap, or the grid; a shared clipmap where there are too
+// many.
+static struct gi_volume *find_volume(struct gi *gi, const struct frame *frame,
+                                     const struct voxel_volume_params *params)
+{
+    bool own = params->method == GI_METHOD_CLIPMAP;
+    struct gi_volume *shared = NULL;
+    for (uint32_t i = 0; i < gi->volume_count; i++) {
+        struct gi_volume *it = &gi->volumes[i];
+        if (!same_params(&it->volume->params, params))
+            continue;
+        if (!own || it->owner == frame->view)
+            return it;
+        shared = it;
+    }
+    if (gi->volume_count == GI_MAX_VOLUMES)
+        return shared;
+    struct voxel_volume *volume = voxel_volume_create(gi->gpu, params);
+    if (!volume)
+        return NULL;
+    struct gi_volume *added = &gi->volumes[gi->volume_count++];
+    *added = (struct gi_volume){
+        .volume = volume, .owner = own ? frame->view : NULL, .serial = gi->next_serial++};
+    return added;
+}
+
+static float luminance_of(const float color[3])
+{
+    return fmaxf(color[0], fmaxf(color[1], color[2]));
+}
+
+// A power of two that radiance is divided by, so that half floats hold it: from the illuminance
+// that lights bring to surfaces some voxels away, from emission and from the environment.
+static float radiance_scale(const struct resident *resident, const struct voxel_volume *volume)
+{
+    const struct scene *scene = resident->scene;
+    float brightest = 0.0f;
+    float near = 0.05f * resident->diagonal_m;
+    (void)volume;
+    for (uint32_t i = 0; i < scene->light_count; i++) {
+        const struct scene_light *light = &scene->lights[i];
+        if (light->removed || !light->enabled)
+            continue;
+        float intensity = light->intensity * luminance_of(light->color) / (float)GLM_PI;
+        bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
+        brightest = fmaxf(brightest, directional ? intensity : intensity / (near * near));
+    }
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        brightest = fmaxf(brightest, luminance_of(scene->materials[i].emissive) *
+                                         scene->materials[i].emissive_strength);
+    if (scene->environment.type != SCENE_ENVIRONMENT_NONE)
+        brightest = fmaxf(brightest, scene->environment.intensity);
+    if (!(brightest > 0.0f) || !isfinite(brightest))
+        return 1.0f;
+    return exp2f(ceilf(log2f(brightest / STORED_PEAK)));
+}
+
+static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
+{
+    const unsigned char *bytes = data;
+    for (size_t i = 0; i < size; i++)
+        hash = (hash ^ bytes[i]) * 1099511628211ull;
+    return hash;
+}
+
+// Of everything that the light in voxels depends on.
+static uint64_t light_key(const struct frame *frame, const struct voxel_volume *volume)
+{
+    const struct render_settings *settings = &frame->params->settings;
+    const struct scene_revisions *now = &frame->resident->scene->revisions;
+    uint64_t words[] = {
+        now->geometry,
+        now->transforms,
+        now->materials,
+        now->lights,
+        settings->environment_light ? now->environment + 1 : 0,
+        settings->bounces,
+        settings->shadows,
+        frame_has(frame, EFFECT_BOUNCE),
+        frame_has(frame, EFFECT_SOFT_SHADOWS),
+    };
+    uint64_t hash = hash_bytes(1469598103934665603ull, words, sizeof(words));
+    return hash_bytes(hash, &volume->uniforms.march, sizeof(volume->uniforms.march));
+}
+
+static void fill_march(struct voxel_volume *volume, enum cone_set set, float step, vec4 out_march,
+                       vec4 out_cones[VOXEL_MAX_CONES])
+{
+    struct cone_directions directions;
+    cone_directions_init(&directions, set);
+    memcpy(out_cones, directions.cones, sizeof(directions.cones));
+    bool anisotropic = volume->params.directions == VOXEL_ANISOTROPIC;
+    out_march[0] = step;
+    out_march[1] = anisotropic ? START_VOXELS : START_VOXELS_ISOTROPIC;
+    out_march[2] = (float)directions.count;
+    out_march[3] = directions.tangent;
+}
+
+static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
+{
+    const struct render_settings *settings = &frame->params->settings;
+    struct voxel_block *block = &volume->uniforms;
+    bool automatic = settings->cone_set == CONE_SET_AUTO;
+    bool own_step = settings->cone_step > 0.0f;
+    // The cache is shared by views of different quality, so it does not depend on it.
+    fill_march(volume, automatic ? CACHE_CONES : settings->cone_set,
+               own_step ? settings->cone_step : CACHE_STEP, block->march, block->cones);
+    fill_march(volume, automatic ? frame->quality->cone_set : settings->cone_set,
+               own_step ? settings->cone_step : frame->quality->cone_step, block->pixel_march,
+               block->pixel_cones);
+    block->light[0] = OCCLUSION_SHARE * frame->resident->diagonal_m;
+    block->light[1] = settings->indirect_intensity;
+}
+
+static enum gather_mode gather_mode_of(const struct frame *frame)
+{
+    enum gather_mode chosen = frame->params->settings.gather_mode;
+    return chosen == GATHER_AUTO ? frame->quality->gather_mode : chosen;
+}
+
+bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
+{
+    frame->volume = NULL;
+    frame->view->volume_serial = 0;
+    frame->gather = gather_mode_of(frame);
+    if (!(frame->plan.bits & VOXEL_EFFECTS))
+        return true;
+    const struct render_settings *settings = &frame->params->settings;
+    struct voxel_volume_params params = volume_params(frame);
+    struct gi_volume *found = find_volume(gi, frame, &params);
+    struct voxel_volume *volume = found ? found->volume : NULL;
+    if (volume && settings->voxelize_every_frame && params.method == GI_METHOD_GRID)
+        volume->everything = true;
+    if (!volume || !voxel_volume_update(volume, frame->resident, frame->params->camera.eye))
+        return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
+    frame->volume = volume;
+    frame->view->volume_serial = found->serial;
+    fill_cones(frame, volume);
+    volume->scale = radiance_scale(frame->resident, volume);
+    struct voxel_light_params light = {
+        .key = light_key(frame, volume),
+        .bounces = settings->bounces,
+        .feedback = frame_has(frame, EFFECT_BOUNCE),
+        .cache_shown = frame->gather == GATHER_CACHE,
+        .camera_moved = frame->visibility_changed,
+        .software = gpu_get_info(gi->gpu)->software,
+        .levels_per_frame = settings->levels_per_frame,
+    };
+    voxel_light_begin(volume, &light, &frame->light_work);
+    return true;
+}

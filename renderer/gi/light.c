@@ -1,0 +1,149 @@
+#include "renderer/gi/light.h"
+
+#include <math.h>
+#include <string.h>
+
+// Time that a frame may spend on cones of the cache, on a CPU: little while the camera moves.
+#define MOVING_TRACE_MS 7.0
+#define STILL_TRACE_MS  45.0
+#define FIRST_ENTRY_MS  0.006
+#define MIN_BUDGET      256.0
+#define MAX_BUDGET      1e6
+#define GPU_BUDGET      131072u
+// Light has settled when no voxel face changes by more than this share of the brightest one.
+#define SETTLED_CHANGE  0.002f
+#define MAX_GENERATIONS 48u
+// Pixels ask for faces in a pattern of so many frames: the cache is complete when nothing was asked
+// for in all of them.
+#define REQUEST_PATTERN 16u
+
+static void start_generation(struct voxel_volume *volume)
+{
+    struct voxel_light_state *light = &volume->light;
+    light->generation = light->generation % 65535u + 1;
+    light->start_pending = false;
+    light->relight = true;
+    light->quiet_frames = 0;
+    // Change and peak are sums over a generation.
+    gpu_buffer_fill(volume->counters, COUNTER_CACHE_CHANGE * 4, 4, 0);
+    gpu_buffer_fill(volume->counters, COUNTER_CACHE_PEAK * 4, 4, 0);
+}
+
+// Generations that make so many bounces: gathering pixels make the last one themselves.
+static uint32_t generations_needed(const struct voxel_light_params *params)
+{
+    if (params->bounces == 0)
+        return MAX_GENERATIONS;
+    return params->cache_shown ? params->bounces : params->bounces - 1;
+}
+
+static double entry_budget(const struct voxel_volume *volume,
+                           const struct voxel_light_params *params)
+{
+    if (!params->software)
+        return GPU_BUDGET;
+    double entry_ms = volume->light.entry_ms > 0.0 ? volume->light.entry_ms : FIRST_ENTRY_MS;
+    double budget = (params->camera_moved ? MOVING_TRACE_MS : STILL_TRACE_MS) / entry_ms;
+    return fmin(fmax(budget, MIN_BUDGET), MAX_BUDGET);
+}
+
+static void plan_relight(struct voxel_volume *volume, const struct voxel_light_params *params,
+                         struct voxel_light_work *work)
+{
+    struct voxel_light_state *light = &volume->light;
+    work->relight = light->relight;
+    work->relight_end = volume->lit_levels;
+    if (!light->relight)
+        return;
+    // Voxels that have just come in are black: those cannot wait for their level's turn.
+    bool one = params->levels_per_frame == LEVELS_PER_FRAME_ONE && volume->lit_levels > 1 &&
+               !work->voxelize;
+    if (one) {
+        work->relight_first = light->next_level % volume->lit_levels;
+        work->relight_end = work->relight_first + 1;
+        light->next_level = work->relight_end % volume->lit_levels;
+        light->relight = light->next_level != 0;
+    } else {
+        light->next_level = 0;
+        light->relight = false;
+    }
+}
+
+void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_params *params,
+                       struct voxel_light_work *out_work)
+{
+    struct voxel_light_state *light = &volume->light;
+    *out_work = (struct voxel_light_work){.voxelize = volume->region_count > 0};
+    light->needed = generations_needed(params);
+    light->unlimited = params->bounces == 0;
+    light->everything_asked = params->feedback;
+    volume->frame = volume->frame % 0x7fffffffu + 1;
+    if (volume->lit_key != params->key || light->generation == 0) {
+        volume->lit_key = params->key;
+        light->bounce = 0;
+        light->converged = false;
+        light->start_pending = true;
+        light->relight = true;
+    }
+    if (out_work->voxelize) {
+        light->relight = true;
+        light->converged = false;
+        light->quiet_frames = 0;
+    }
+    if (!params->feedback && params->camera_moved) {
+        light->converged = false;
+        light->quiet_frames = 0;
+    }
+    if (light->bounce >= light->needed && light->needed == 0)
+        light->converged = true; // gathering pixels need no cache
+    if (!light->converged && light->start_pending && !(light->relight && light->next_level != 0))
+        start_generation(volume);
+    plan_relight(volume, params, out_work);
+    out_work->trace = !light->converged && !(light->relight && light->next_level != 0);
+    // The first generation after an edit must not see old light where bounces are counted.
+    bool feeds = params->feedback && (light->bounce > 0 || light->unlimited);
+    volume->uniforms.cache[0] = light->generation;
+    volume->uniforms.cache[1] = volume->frame;
+    volume->uniforms.cache[2] = (uint32_t)entry_budget(volume, params);
+    volume->uniforms.cache[3] = params->feedback;
+    light->feeds = feeds;
+}
+
+void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
+                         const struct voxel_light_report *report, double trace_ms)
+{
+    struct voxel_light_state *light = &volume->light;
+    if (report->traced >= MIN_BUDGET / 2 && trace_ms > 0.0)
+        light->entry_ms = trace_ms / report->traced;
+    if (generation != light->generation || light->start_pending || light->converged)
+        return;
+    light->left = report->left;
+    light->quiet_frames = report->left == 0 && report->traced == 0 ? light->quiet_frames + 1 : 0;
+    bool complete =
+        light->everything_asked ? report->left == 0 : light->quiet_frames >= REQUEST_PATTERN;
+    if (!complete)
+        return;
+    float change, peak;
+    memcpy(&change, &report->change_bits, sizeof(change));
+    memcpy(&peak, &report->peak_bits, sizeof(peak));
+    light->change = peak > 0.0f ? change / peak : 0.0f;
+    light->bounce++;
+    light->converged =
+        light->bounce >= light->needed || (light->unlimited && light->change < SETTLED_CHANGE);
+    light->start_pending = !light->converged;
+    light->version++;
+    // Cones that gather for pixels shall see the last bounce, too.
+    light->relight = true;
+}
+
+float voxel_light_convergence(const struct voxel_volume *volume)
+{
+    const struct voxel_light_state *light = &volume->light;
+    if (light->converged)
+        return 1.0f;
+    if (light->bounce == 0)
+        return 0.0f;
+    float left = light->unlimited ? fminf(light->change, 1.0f)
+                                  : 1.0f - (float)light->bounce / (float)light->needed;
+    return 0.99f * (1.0f - left);
+}

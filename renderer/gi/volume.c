@@ -1,0 +1,443 @@
+#include "renderer/gi/volume.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A level's region moves in steps of so many voxels, so that those of the coarser level stay whole.
+#define SNAP_VOXELS 2
+// The coarsest level is larger than the scene by so many of its voxels. The third keeps surfaces of
+// the scene's bounds away from the faces of voxels, where they would fill both sides.
+#define MARGIN_VOXELS 4.0
+#define ANCHOR_OFFSET (1.0 / 3.0)
+#define TILE_CAPACITY 65535u
+
+static uint32_t log2_of(uint32_t edge)
+{
+    uint32_t log2 = 0;
+    while ((1u << log2) < edge)
+        log2++;
+    return log2;
+}
+
+static void free_pools(struct voxel_volume *volume)
+{
+    gpu_buffer_destroy(&volume->cells);
+    gpu_buffer_destroy(&volume->surfels);
+    gpu_buffer_destroy(&volume->free_list);
+    gpu_buffer_destroy(&volume->lists);
+    gpu_buffer_destroy(&volume->queue);
+}
+
+static struct gpu_buffer *make(struct voxel_volume *volume, const char *label, size_t words)
+{
+    return gpu_buffer_create(volume->gpu, label, GPU_BUFFER_STATIC, words * 4, NULL);
+}
+
+static bool create_pools(struct voxel_volume *volume)
+{
+    size_t cells = volume->cell_capacity, surfels = volume->surfel_capacity;
+    // Bits that tell which voxels of the mip levels are occupied.
+    size_t bits = 0;
+    for (uint32_t i = 1; i < volume->level_count; i++)
+        bits += (size_t)1 << (3 * log2_of(volume->levels[i].edge));
+    volume->list_words = VOXEL_MAX_LEVELS * cells + (volume->lit_levels == 1 ? bits / 32 + 1 : 0);
+    volume->cells = make(volume, "gi.cells", cells * CELL_WORDS);
+    volume->surfels = make(volume, "gi.surfels", surfels * SURFEL_WORDS);
+    volume->free_list = make(volume, "gi.free", cells + 2 * surfels);
+    volume->lists = make(volume, "gi.lists", volume->list_words);
+    volume->queue = make(volume, "gi.queue", cells * CACHE_CLASSES);
+    return volume->cells && volume->surfels && volume->free_list && volume->lists && volume->queue;
+}
+
+static struct gpu_texture *create_texture(const struct voxel_volume *volume)
+{
+    uint32_t outer = volume->params.edge + 2;
+    bool clipmap = volume->params.method == GI_METHOD_CLIPMAP;
+    uint32_t height = clipmap ? outer * volume->level_count : outer + outer / 2 + 2;
+    // Mip levels lie side by side: their widths add up to less than the finest level's but for
+    // borders.
+    uint32_t width = volume->face_count * (outer + (clipmap ? 0 : 2 * volume->level_count));
+    return gpu_texture_create(volume->gpu, &(struct gpu_texture_params){
+                                               .label = "gi.radiance",
+                                               .format = GPU_FORMAT_RGBA16F,
+                                               .width = width,
+                                               .height = height,
+                                               .depth = outer,
+                                               .filter = GPU_FILTER_LINEAR,
+                                           });
+}
+
+static bool create_storage(struct voxel_volume *volume)
+{
+    size_t per_level = (size_t)1 << (3 * log2_of(volume->params.edge));
+    volume->radiance = create_texture(volume);
+    volume->index = make(volume, "gi.index", per_level * volume->lit_levels);
+    volume->counters = make(volume, "gi.counters", COUNTER_COUNT);
+    volume->tile_capacity = TILE_CAPACITY;
+    volume->tiles = make(volume, "gi.tiles", (size_t)TILE_CAPACITY * 4);
+    volume->block = make(volume, "gi.uniforms", sizeof(struct voxel_block) / 4);
+    uint32_t area = volume->params.edge * volume->params.edge;
+    volume->cell_capacity = 6 * area * volume->lit_levels;
+    volume->surfel_capacity = 8 * area * volume->lit_levels;
+    return volume->radiance && volume->index && volume->counters && volume->tiles &&
+           volume->block && create_pools(volume);
+}
+
+static void destroy_storage(struct voxel_volume *volume)
+{
+    free_pools(volume);
+    gpu_texture_destroy(&volume->radiance);
+    gpu_buffer_destroy(&volume->index);
+    gpu_buffer_destroy(&volume->counters);
+    gpu_buffer_destroy(&volume->tiles);
+    gpu_buffer_destroy(&volume->block);
+    gpu_buffer_destroy(&volume->work);
+    gpu_buffer_destroy(&volume->surfaces);
+    volume->chunk_capacity = 0;
+}
+
+struct voxel_volume *voxel_volume_create(struct gpu *gpu, const struct voxel_volume_params *params)
+{
+    struct voxel_volume *volume = calloc(1, sizeof(*volume));
+    if (!volume)
+        return NULL;
+    volume->gpu = gpu;
+    volume->params = *params;
+    volume->face_count = params->directions == VOXEL_ANISOTROPIC ? VOXEL_FACES : 1;
+    return volume;
+}
+
+void voxel_volume_destroy(struct voxel_volume **volume_slot)
+{
+    struct voxel_volume *volume = *volume_slot;
+    *volume_slot = NULL;
+    if (!volume)
+        return;
+    destroy_storage(volume);
+    free(volume->instances);
+    free(volume->scratch);
+    free(volume);
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// As many levels as it takes for the coarsest to cover the scene while the finest resolves a
+// typical object: its extent against the scene's, so that the scene's unit does not matter.
+static uint32_t choose_levels(const struct voxel_volume *volume, const struct resident *resident,
+                              float extent)
+{
+    uint32_t most = volume->params.edge <= 64 ? 4 : CLIP_MAX_LEVELS;
+    if (volume->params.clip_levels > 0)
+        return volume->params.clip_levels < CLIP_MAX_LEVELS ? volume->params.clip_levels
+                                                            : CLIP_MAX_LEVELS;
+    float *extents = malloc((resident->counts.instances + 1) * sizeof(*extents));
+    uint32_t count = 0;
+    for (uint32_t i = 0; extents && i < resident->counts.instances; i++) {
+        const struct resident_instance *instance = &resident->instances[i];
+        float largest = 0.0f;
+        for (int axis = 0; axis < 3; axis++)
+            largest = fmaxf(largest, instance->bounds_max[axis] - instance->bounds_min[axis]);
+        if (instance->visible && largest > 0.0f)
+            extents[count++] = largest;
+    }
+    float typical = extent;
+    if (count > 0) {
+        qsort(extents, count, sizeof(*extents), compare_floats);
+        typical = extents[count / 2];
+    }
+    free(extents);
+    float levels = 1.0f + roundf(log2f(extent / typical));
+    return (uint32_t)fminf(fmaxf(levels, 1.0f), (float)most);
+}
+
+// Where the levels lie, from the scene's bounds; allocates what depends on their number.
+static bool lay_out(struct voxel_volume *volume, const struct resident *resident)
+{
+    bool clipmap = volume->params.method == GI_METHOD_CLIPMAP;
+    float extent = 0.0f;
+    for (int axis = 0; axis < 3; axis++) {
+        float low = resident->bounds_min[axis], high = resident->bounds_max[axis];
+        bool finite = isfinite(low) && isfinite(high);
+        volume->bounds_min[axis] = finite ? low : 0.0f;
+        volume->bounds_max[axis] = finite ? high : 0.0f;
+        extent = fmaxf(extent, volume->bounds_max[axis] - volume->bounds_min[axis]);
+    }
+    if (!(extent > 0.0f) || !isfinite(extent))
+        extent = 1.0f;
+    uint32_t edge = volume->params.edge;
+    uint32_t levels = clipmap ? choose_levels(volume, resident, extent) : log2_of(edge) - 1;
+    bool same = volume->radiance && levels == volume->level_count;
+    volume->level_count = levels;
+    volume->lit_levels = clipmap ? levels : 1;
+    uint32_t doublings = clipmap ? levels - 1 : 0;
+    double coarse = extent / ((double)edge - MARGIN_VOXELS);
+    // Exact powers of two apart, and exact as floats, so that shaders see the same voxels.
+    double fine = (double)(float)ldexp(coarse, -(int)doublings);
+    for (uint32_t i = 0; i < levels; i++) {
+        volume->levels[i].edge = clipmap ? edge : edge >> i;
+        volume->levels[i].voxel_edge_m = ldexp(fine, (int)i);
+    }
+    double middle_offset = ANCHOR_OFFSET * ldexp(fine, (int)doublings);
+    for (int axis = 0; axis < 3; axis++) {
+        double middle = 0.5 * ((double)volume->bounds_min[axis] + volume->bounds_max[axis]);
+        // Voxels of a grid count from its corner, since they do not wrap.
+        double corner = clipmap ? 0.0 : 0.5 * (double)edge * fine;
+        volume->anchor[axis] = (double)(float)(middle + middle_offset - corner);
+    }
+    if (!same) {
+        destroy_storage(volume);
+        if (!create_storage(volume))
+            return false;
+    }
+    volume->laid_out = true;
+    volume->everything = true;
+    return true;
+}
+
+static bool covers_scene(const struct voxel_volume *volume, const struct resident *resident)
+{
+    float old_size = 0.0f, size = 0.0f;
+    for (int axis = 0; axis < 3; axis++) {
+        float slack = 2.0f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
+        float low = resident->bounds_min[axis], high = resident->bounds_max[axis];
+        if (low < volume->bounds_min[axis] - slack || high > volume->bounds_max[axis] + slack)
+            return false;
+        old_size = fmaxf(old_size, volume->bounds_max[axis] - volume->bounds_min[axis]);
+        size = fmaxf(size, high - low);
+    }
+    // A scene that has shrunk deserves finer voxels.
+    return !(size < 0.5f * old_size);
+}
+
+// The region of a clip level: around the camera, but no further out than the scene reaches.
+static void place_level(const struct voxel_volume *volume, uint32_t number, const float eye[3],
+                        struct voxel_box *out_box)
+{
+    const struct voxel_level *level = &volume->levels[number];
+    int32_t edge = (int32_t)level->edge;
+    for (int axis = 0; axis < 3; axis++) {
+        double center = eye[axis];
+        double half = 0.5 * (edge - MARGIN_VOXELS) * level->voxel_edge_m;
+        double low = volume->bounds_min[axis] + half, high = volume->bounds_max[axis] - half;
+        if (low > high)
+            low = high = 0.5 * ((double)volume->bounds_min[axis] + volume->bounds_max[axis]);
+        center = fmin(fmax(center, low), high);
+        double voxel = (center - volume->anchor[axis]) / level->voxel_edge_m;
+        int32_t snapped = SNAP_VOXELS * (int32_t)floor(voxel / SNAP_VOXELS + 0.5);
+        if (volume->params.method == GI_METHOD_GRID)
+            snapped = edge / 2;
+        out_box->low[axis] = snapped - edge / 2;
+        out_box->high[axis] = snapped + edge / 2;
+    }
+}
+
+// Places every level, and marks what has come into its region.
+static void move_levels(struct voxel_volume *volume, const float eye[3])
+{
+    for (uint32_t i = 0; i < volume->level_count; i++) {
+        struct voxel_level *level = &volume->levels[i];
+        struct voxel_box box;
+        place_level(volume, i, eye, &box);
+        volume->dirty[i].count = 0;
+        if (volume->everything)
+            voxel_boxes_add(&volume->dirty[i], box);
+        else if (i < volume->lit_levels)
+            voxel_boxes_entered(&volume->dirty[i], &level->box, &box);
+        level->box = box;
+        level->inner = (struct voxel_box){0};
+        for (int axis = 0; axis < 3 && i > 0 && i < volume->lit_levels; axis++) {
+            level->inner.low[axis] = volume->levels[i - 1].box.low[axis] / 2;
+            level->inner.high[axis] = volume->levels[i - 1].box.high[axis] / 2;
+        }
+    }
+}
+
+static struct voxel_box box_of_bounds(const struct voxel_volume *volume,
+                                      const struct voxel_level *level, const float low[3],
+                                      const float high[3])
+{
+    struct voxel_box box;
+    for (int axis = 0; axis < 3; axis++) {
+        // A little wider than rounding could take a triangle.
+        double from = (low[axis] - volume->anchor[axis]) / level->voxel_edge_m - 1.01;
+        double to = (high[axis] - volume->anchor[axis]) / level->voxel_edge_m + 1.01;
+        box.low[axis] = (int32_t)floor(fmin(fmax(from, -1e9), 1e9));
+        box.high[axis] = (int32_t)ceil(fmin(fmax(to, -1e9), 1e9)) + 1;
+    }
+    return box;
+}
+
+static void mark_bounds(struct voxel_volume *volume, const struct voxel_box kept[],
+                        const float low[3], const float high[3])
+{
+    for (uint32_t i = 0; i < volume->lit_levels; i++) {
+        struct voxel_box box = box_of_bounds(volume, &volume->levels[i], low, high);
+        box = voxel_box_intersect(&box, &kept[i]);
+        voxel_boxes_add(&volume->dirty[i], box);
+    }
+}
+
+static void remember_instance(struct voxel_instance *seen, const struct resident *resident,
+                              const struct resident_instance *instance)
+{
+    memcpy(seen->matrix, resident->scene->nodes[instance->node].world_from_local,
+           sizeof(seen->matrix));
+    memcpy(seen->bounds_min, instance->bounds_min, sizeof(seen->bounds_min));
+    memcpy(seen->bounds_max, instance->bounds_max, sizeof(seen->bounds_max));
+    seen->visible = instance->visible;
+}
+
+// Marks where moved, shown and hidden objects were and are. `kept`: per level what was covered
+// before and still is; the rest is marked already.
+static void mark_moved_instances(struct voxel_volume *volume, const struct resident *resident,
+                                 const struct voxel_box kept[])
+{
+    for (uint32_t i = 0; i < volume->instance_count; i++) {
+        const struct resident_instance *instance = &resident->instances[i];
+        struct voxel_instance *seen = &volume->instances[i];
+        const float *matrix = resident->scene->nodes[instance->node].world_from_local;
+        if (seen->visible == instance->visible &&
+            memcmp(seen->matrix, matrix, sizeof(seen->matrix)) == 0)
+            continue;
+        if (seen->visible)
+            mark_bounds(volume, kept, seen->bounds_min, seen->bounds_max);
+        if (instance->visible)
+            mark_bounds(volume, kept, instance->bounds_min, instance->bounds_max);
+        remember_instance(seen, resident, instance);
+    }
+}
+
+static bool remember_all_instances(struct voxel_volume *volume, const struct resident *resident)
+{
+    uint32_t count = resident->counts.instances;
+    free(volume->instances);
+    volume->instances = calloc(count ? count : 1, sizeof(*volume->instances));
+    volume->instance_count = volume->instances ? count : 0;
+    for (uint32_t i = 0; i < volume->instance_count; i++)
+        remember_instance(&volume->instances[i], resident, &resident->instances[i]);
+    return volume->instances != NULL;
+}
+
+bool voxel_volume_update(struct voxel_volume *volume, const struct resident *resident,
+                         const float eye[3])
+{
+    const struct scene_revisions *now = &resident->scene->revisions;
+    bool geometry = !volume->laid_out || now->geometry != volume->geometry_seen;
+    bool transforms = now->transforms != volume->transforms_seen;
+    if (geometry || (transforms && !covers_scene(volume, resident)))
+        if (!lay_out(volume, resident))
+            return false;
+    struct voxel_box before[VOXEL_MAX_LEVELS], kept[VOXEL_MAX_LEVELS];
+    for (uint32_t i = 0; i < volume->level_count; i++)
+        before[i] = volume->levels[i].box;
+    move_levels(volume, eye);
+    for (uint32_t i = 0; i < volume->level_count; i++)
+        kept[i] = voxel_box_intersect(&before[i], &volume->levels[i].box);
+    if (volume->everything) {
+        if (!remember_all_instances(volume, resident))
+            return false;
+    } else if (transforms) {
+        mark_moved_instances(volume, resident, kept);
+    }
+    volume->geometry_seen = now->geometry;
+    volume->transforms_seen = now->transforms;
+    return voxel_volume_prepare_work(volume, resident);
+}
+
+enum voxel_room voxel_volume_check_room(struct voxel_volume *volume)
+{
+    uint32_t counters[COUNTER_LISTS];
+    gpu_buffer_read(volume->counters, 0, sizeof(counters), counters);
+    volume->cell_count = counters[COUNTER_CELLS] < volume->cell_capacity ? counters[COUNTER_CELLS]
+                                                                         : volume->cell_capacity;
+    if (!counters[COUNTER_OVERFLOW])
+        return VOXEL_ROOM_ENOUGH;
+    free_pools(volume);
+    // The counters went on counting beyond the capacity, so they tell how much is needed at least.
+    uint32_t cells = counters[COUNTER_CELLS], surfels = counters[COUNTER_SURFELS];
+    volume->cell_capacity = 2 * (cells > volume->cell_capacity ? cells : volume->cell_capacity);
+    volume->surfel_capacity =
+        2 * (surfels > volume->surfel_capacity ? surfels : volume->surfel_capacity);
+    volume->everything = true;
+    return create_pools(volume) ? VOXEL_ROOM_GROWN : VOXEL_ROOM_NONE;
+}
+
+static void fill_levels(const struct voxel_volume *volume, struct voxel_block *block)
+{
+    bool clipmap = volume->params.method == GI_METHOD_CLIPMAP;
+    int32_t outer = (int32_t)volume->params.edge + 2;
+    int32_t mip_x = 0;
+    for (uint32_t i = 0; i < volume->level_count; i++) {
+        const struct voxel_level *level = &volume->levels[i];
+        struct voxel_level_block *target = &block->levels[i];
+        int32_t edge = (int32_t)level->edge;
+        for (int axis = 0; axis < 3; axis++) {
+            target->origin[axis] = level->box.low[axis];
+            target->inner[axis] = level->inner.low[axis];
+            target->texels[axis] = 1;
+        }
+        target->origin[3] = edge;
+        target->inner[3] = level->inner.high[0] - level->inner.low[0];
+        if (clipmap) {
+            target->texels[1] += outer * (int32_t)i;
+        } else if (i > 0) {
+            target->texels[0] += mip_x;
+            target->texels[1] += outer;
+            mip_x += (int32_t)volume->face_count * (edge + 2);
+        }
+        target->texels[3] = volume->face_count > 1 ? edge + 2 : 0;
+        uint32_t log2 = log2_of(level->edge);
+        target->index[0] = clipmap ? i << (3 * log2) : 0;
+        target->index[1] = log2;
+        target->index[2] = clipmap;
+        target->size[0] = (float)level->voxel_edge_m;
+        target->size[1] = (float)(1.0 / level->voxel_edge_m);
+    }
+}
+
+void voxel_volume_bind(struct voxel_volume *volume)
+{
+    struct gpu *gpu = volume->gpu;
+    struct voxel_block *block = &volume->uniforms;
+    for (int axis = 0; axis < 3; axis++)
+        block->anchor[axis] = (float)volume->anchor[axis];
+    block->anchor[3] = volume->scale;
+    memcpy(block->counts,
+           (uvec4){volume->level_count, volume->face_count, volume->cell_capacity,
+                   volume->surfel_capacity},
+           sizeof(uvec4));
+    memcpy(block->work,
+           (uvec4){volume->region_count, volume->region_voxels, volume->chunk_count,
+                   volume->tile_capacity},
+           sizeof(uvec4));
+    block->options[0] = volume->cell_capacity;
+    block->options[3] = volume->instance_count;
+    fill_levels(volume, block);
+    gpu_buffer_write(volume->block, 0, sizeof(*block), block);
+    gpu_bind_uniforms(gpu, BIND_VOXELS, volume->block);
+    gpu_bind_storage(gpu, BIND_VOXEL_INDEX, volume->index);
+    gpu_bind_storage(gpu, BIND_CELLS, volume->cells);
+    gpu_bind_storage(gpu, BIND_SURFELS, volume->surfels);
+    gpu_bind_storage(gpu, BIND_VOXEL_COUNTERS, volume->counters);
+    gpu_bind_storage(gpu, BIND_VOXEL_FREE, volume->free_list);
+    gpu_bind_storage(gpu, BIND_VOXEL_WORK, volume->work);
+    gpu_bind_storage(gpu, BIND_VOXEL_TILES, volume->tiles);
+    gpu_bind_storage(gpu, BIND_VOXEL_LISTS, volume->lists);
+    gpu_bind_storage(gpu, BIND_VOXEL_SURFACES, volume->surfaces);
+    gpu_bind_storage(gpu, BIND_CACHE_QUEUE, volume->queue);
+    gpu_bind_texture(gpu, UNIT_VOXEL_RADIANCE, volume->radiance);
+    gpu_bind_image(gpu, IMAGE_VOXEL_RADIANCE, volume->radiance);
+}
+
+void voxel_volume_choose_levels(struct voxel_volume *volume, uint32_t first, uint32_t end)
+{
+    volume->uniforms.options[1] = first;
+    volume->uniforms.options[2] = end;
+    gpu_buffer_write(volume->block, offsetof(struct voxel_block, options), sizeof(uvec4),
+                     volume->uniforms.options);
+}

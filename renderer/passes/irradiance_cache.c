@@ -1,0 +1,56 @@
+// Traces the cones of voxel faces that pixels and voxels have asked for, as many as a frame may
+// take.
+#include "renderer/gi/volume.h"
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+#define REQUEST_EDGE 4u // as in shaders/gi/cache_request.comp
+
+static const char *irradiance_cache_skip_reason(const struct frame *frame)
+{
+    if (!frame->volume)
+        return "no effect needs voxels";
+    if (!frame_has(frame, EFFECT_INDIRECT_DIFFUSE))
+        return "no surface passes light on";
+    return frame->light_work.trace ? NULL : "irradiance has converged";
+}
+
+static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
+                                 struct error *out_error)
+{
+    struct voxel_volume *volume = frame->volume;
+    const struct gpu_program *request =
+        voxel_program(frame, pass, "gi/cache_request.comp", "", out_error);
+    const struct gpu_program *select =
+        request ? voxel_program(frame, pass, "gi/cache_select.comp", "STAGE 0\n", out_error) : NULL;
+    const struct gpu_program *arguments =
+        select ? voxel_program(frame, pass, "gi/cache_select.comp", "STAGE 1\n", out_error) : NULL;
+    const struct gpu_program *trace =
+        arguments ? voxel_program(frame, pass, "gi/cache_trace.comp", "PIXEL_CONES 0\n", out_error)
+                  : NULL;
+    if (!trace)
+        return false;
+    gpu_buffer_fill(volume->counters, COUNTER_CACHE_CLASSES * 4, CACHE_CLASSES * 4, 0);
+    uint32_t pixels = GROUP_EDGE * REQUEST_EDGE;
+    gpu_dispatch(frame->gpu, request, (frame->width + pixels - 1) / pixels,
+                 (frame->height + pixels - 1) / pixels, 1);
+    gpu_barrier(frame->gpu);
+    gpu_dispatch_indirect(frame->gpu, select, volume->counters, COUNTER_LISTS * 4);
+    gpu_barrier(frame->gpu);
+    gpu_dispatch(frame->gpu, arguments, 1, 1, 1);
+    gpu_barrier(frame->gpu);
+    gpu_dispatch_indirect(frame->gpu, trace, volume->counters, COUNTER_CACHE_ARGUMENTS * 4);
+    return true;
+}
+
+const struct pass irradiance_cache_pass = {
+    .name = "irradiance_cache",
+    .effects_used = EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS),
+    .use_count = 4,
+    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
+             {RESOURCE_VOXELS, ACCESS_READ},
+             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
+             {RESOURCE_IRRADIANCE, ACCESS_WRITE}},
+    .skip_reason = irradiance_cache_skip_reason,
+    .run = irradiance_cache_run,
+};

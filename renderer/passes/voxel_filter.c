@@ -1,0 +1,38 @@
+// Fills the mip levels of a grid, and the middle of each clip level, from the next finer level.
+#include "renderer/gi/volume.h"
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *voxel_filter_skip_reason(const struct frame *frame)
+{
+    if (!frame->volume)
+        return "no effect needs voxels";
+    if (frame->volume->level_count == 1)
+        return "one level only";
+    return frame->light_work.relight ? NULL : "light in voxels unchanged";
+}
+
+static bool voxel_filter_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    struct voxel_volume *volume = frame->volume;
+    const struct gpu_program *program =
+        voxel_program(frame, pass, "voxel/voxel_filter.comp", "", out_error);
+    if (!program)
+        return false;
+    for (uint32_t level = 1; level < volume->level_count; level++) {
+        voxel_volume_choose_levels(volume, level, level + 1);
+        gpu_dispatch_indirect(frame->gpu, program, volume->counters,
+                              (COUNTER_LISTS + level * COUNTER_LIST_WORDS) * sizeof(uint32_t));
+        gpu_barrier(frame->gpu); // the next level reads what this one wrote
+    }
+    return true;
+}
+
+const struct pass voxel_filter_pass = {
+    .name = "voxel_filter",
+    .effects_used = EFFECT_BIT(EFFECT_CLIP_LEVELS),
+    .use_count = 2,
+    .uses = {{RESOURCE_VOXELS, ACCESS_READ}, {RESOURCE_VOXEL_RADIANCE, ACCESS_READ_WRITE}},
+    .skip_reason = voxel_filter_skip_reason,
+    .run = voxel_filter_run,
+};

@@ -1,0 +1,43 @@
+// Lights occupied voxels: direct light, emission, and what the irradiance cache holds.
+#include "renderer/gi/volume.h"
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *voxel_relight_skip_reason(const struct frame *frame)
+{
+    if (!frame->volume)
+        return "no effect needs voxels";
+    return frame->light_work.relight ? NULL : "light in voxels unchanged";
+}
+
+static bool voxel_relight_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    struct voxel_volume *volume = frame->volume;
+    bool feeds = frame_has(frame, EFFECT_BOUNCE) && volume->light.feeds;
+    const struct gpu_program *program =
+        voxel_program(frame, pass, "voxel/voxel_relight.comp",
+                      feeds ? "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nFEEDBACK 1\n"
+                            : "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nFEEDBACK 0\n",
+                      out_error);
+    if (!program)
+        return false;
+    voxel_volume_choose_levels(volume, frame->light_work.relight_first,
+                               frame->light_work.relight_end);
+    gpu_dispatch_indirect(frame->gpu, program, volume->counters, COUNTER_LISTS * 4);
+    return true;
+}
+
+const struct pass voxel_relight_pass = {
+    .name = "voxel_relight",
+    .effects_used = EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_FLAT_SHADOWS) |
+                    EFFECT_BIT(EFFECT_CUBE_SHADOWS) | EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) |
+                    EFFECT_BIT(EFFECT_AREA_LIGHTS) | EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) |
+                    EFFECT_BIT(EFFECT_VOXEL_COLORS),
+    .use_count = 4,
+    .uses = {{RESOURCE_VOXELS, ACCESS_READ},
+             {RESOURCE_SHADOW_MAP, ACCESS_READ},
+             {RESOURCE_IRRADIANCE, ACCESS_HISTORY},
+             {RESOURCE_VOXEL_RADIANCE, ACCESS_WRITE}},
+    .skip_reason = voxel_relight_skip_reason,
+    .run = voxel_relight_run,
+};

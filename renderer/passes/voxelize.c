@@ -1,0 +1,128 @@
+// Enters triangles into the voxels of regions that geometry or a clip level has come into.
+#include "renderer/gi/volume.h"
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+// Groups along x of a dispatch of more groups than one dimension holds.
+#define ROW_GROUPS 4096u
+#define MAX_GROWTH 12
+
+static const char *voxelize_skip_reason(const struct frame *frame)
+{
+    if (!frame->volume)
+        return "no effect needs voxels";
+    return frame->light_work.voxelize ? NULL : "geometry and clip levels unmoved";
+}
+
+static void dispatch_rows(const struct frame *frame, const struct gpu_program *program,
+                          uint32_t groups)
+{
+    uint32_t rows = (groups + ROW_GROUPS - 1) / ROW_GROUPS;
+    gpu_dispatch(frame->gpu, program, rows > 1 ? ROW_GROUPS : groups, rows, 1);
+    gpu_barrier(frame->gpu);
+}
+
+struct voxelize_programs {
+    const struct gpu_program *clear, *small, *large, *cells, *mend, *list, *arguments, *tiles;
+};
+
+static bool get_programs(const struct frame *frame, const struct pass *pass,
+                         struct voxelize_programs *programs, struct error *out_error)
+{
+    bool mips = frame->volume->params.method == GI_METHOD_GRID;
+    const struct {
+        const struct gpu_program **program;
+        const char *shader, *extra;
+    } wanted[] = {
+        {&programs->clear, "voxel/voxel_clear.comp", ""},
+        {&programs->small, "voxel/voxelize.comp", "LARGE 0\n"},
+        {&programs->large, "voxel/voxelize.comp", "LARGE 1\n"},
+        {&programs->cells, "voxel/voxel_cells.comp", ""},
+        {&programs->mend, "voxel/voxel_lists.comp", "STAGE 0\n"},
+        {&programs->list, "voxel/voxel_lists.comp",
+         mips ? "STAGE 1\nMIPS 1\n" : "STAGE 1\nMIPS 0\n"},
+        {&programs->arguments, "voxel/voxel_lists.comp", "STAGE 2\n"},
+        {&programs->tiles, "voxel/voxel_lists.comp", "STAGE 3\n"},
+    };
+    for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++) {
+        *wanted[i].program =
+            voxel_program(frame, pass, wanted[i].shader, wanted[i].extra, out_error);
+        if (!*wanted[i].program)
+            return false;
+    }
+    return true;
+}
+
+static void empty_regions(const struct frame *frame, const struct voxelize_programs *programs)
+{
+    struct voxel_volume *volume = frame->volume;
+    if (volume->everything) {
+        gpu_buffer_clear(volume->index);
+        gpu_buffer_fill(volume->counters, 0, COUNTER_CACHE_LEFT * 4, 0);
+        gpu_texture_clear(volume->radiance);
+        gpu_barrier(frame->gpu);
+    } else {
+        dispatch_rows(frame, programs->clear,
+                      (volume->region_voxels + LINEAR_GROUP - 1) / LINEAR_GROUP);
+    }
+    gpu_buffer_fill(volume->counters, COUNTER_TILES * 4, 4, 0);
+}
+
+static void enter_triangles(const struct frame *frame, const struct voxelize_programs *programs)
+{
+    struct voxel_volume *volume = frame->volume;
+    dispatch_rows(frame, programs->small, volume->chunk_count);
+    gpu_dispatch(frame->gpu, programs->tiles, 1, 1, 1);
+    gpu_barrier(frame->gpu);
+    gpu_dispatch_indirect(frame->gpu, programs->large, volume->counters, COUNTER_TILES * 4);
+    gpu_barrier(frame->gpu);
+}
+
+static void list_cells(const struct frame *frame, const struct voxelize_programs *programs)
+{
+    struct voxel_volume *volume = frame->volume;
+    dispatch_rows(frame, programs->cells,
+                  (volume->region_voxels + LINEAR_GROUP - 1) / LINEAR_GROUP);
+    gpu_dispatch(frame->gpu, programs->mend, 1, 1, 1);
+    gpu_barrier(frame->gpu);
+    size_t bits = VOXEL_MAX_LEVELS * (size_t)volume->cell_capacity;
+    if (volume->list_words > bits)
+        gpu_buffer_fill(volume->lists, bits * 4, (volume->list_words - bits) * 4, 0);
+}
+
+static bool voxelize_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    struct voxel_volume *volume = frame->volume;
+    struct voxelize_programs programs;
+    if (!get_programs(frame, pass, &programs, out_error))
+        return false;
+    for (int attempt = 0; attempt < MAX_GROWTH; attempt++) {
+        empty_regions(frame, &programs);
+        enter_triangles(frame, &programs);
+        list_cells(frame, &programs);
+        enum voxel_room room = voxel_volume_check_room(volume);
+        if (room == VOXEL_ROOM_ENOUGH) {
+            dispatch_rows(frame, programs.list,
+                          (volume->cell_count + LINEAR_GROUP - 1) / LINEAR_GROUP);
+            gpu_dispatch(frame->gpu, programs.arguments, 1, 1, 1);
+            volume->everything = false;
+            return true;
+        }
+        if (room == VOXEL_ROOM_NONE ||
+            !voxel_volume_update(volume, frame->resident, frame->params->camera.eye))
+            break;
+        voxel_volume_bind(volume);
+    }
+    volume->laid_out = false;
+    return error_set(out_error, "the scene's voxels do not fit into GPU memory; choose a lower "
+                                "voxel_resolution");
+}
+
+const struct pass voxelize_pass = {
+    .name = "voxelize",
+    .effects_used = SURFACE_EFFECTS | EFFECT_BIT(EFFECT_VOXEL_COLORS),
+    .use_count = 1,
+    .uses = {{RESOURCE_VOXELS, ACCESS_WRITE}},
+    .skip_reason = voxelize_skip_reason,
+    .run = voxelize_run,
+};

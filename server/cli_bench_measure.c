@@ -1,0 +1,142 @@
+#include "server/cli_bench.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define SWAY_STEP_RAD 0.03f
+#define SWAY_RAD      0.3f
+
+double bench_now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+// Turns the eye about the vertical through the target.
+static void sway_camera(const struct view_camera *from, uint32_t frame, struct view_camera *to)
+{
+    *to = *from;
+    float angle = SWAY_RAD * sinf((float)frame * SWAY_STEP_RAD);
+    float x = from->eye[0] - from->target[0], z = from->eye[2] - from->target[2];
+    to->eye[0] = from->target[0] + cosf(angle) * x + sinf(angle) * z;
+    to->eye[2] = from->target[2] - sinf(angle) * x + cosf(angle) * z;
+}
+
+static bool converge(const struct bench_run *run, struct view *view, struct bench_result *result,
+                     struct error *out_error)
+{
+    struct cli_still still = {.renderer = run->renderer,
+                              .view = view,
+                              .params = &run->params,
+                              .max_frames = run->max_converge_frames};
+    if (run->max_converge_frames == 0)
+        return true;
+    if (!cli_render_still(&still, out_error))
+        return false;
+    result->converge_frames = still.frame_count;
+    renderer_view_release(run->renderer, view);
+    return true;
+}
+
+static bool measure_frame(const struct bench_run *run, struct view *view, uint32_t frame,
+                          struct bench_result *result, struct error *out_error)
+{
+    struct frame_params params = run->params;
+    struct frame_pixels pixels;
+    sway_camera(&run->params.camera, frame + 1, &params.camera);
+    if (!cli_render_next_frame(run->renderer, view, &params, &pixels, out_error))
+        return false;
+    renderer_view_get_statistics(run->renderer, view, &result->statistics);
+    result->convergence = pixels.convergence;
+    renderer_view_release(run->renderer, view);
+    return frame < run->warm_up_frames ||
+           cli_measurement_add(&result->measurement, &result->statistics) ||
+           error_set(out_error, "out of memory");
+}
+
+bool bench_measure(const struct bench_run *run, struct bench_result *out_result,
+                   struct error *out_error)
+{
+    *out_result = (struct bench_result){0};
+    struct view *view = renderer_view_create(run->renderer);
+    if (!view)
+        return error_set(out_error, "out of memory");
+    bool done = converge(run, view, out_result, out_error);
+    for (uint32_t i = 0; i < run->frames + run->warm_up_frames && done; i++)
+        done = measure_frame(run, view, i, out_result, out_error);
+    renderer_view_destroy(run->renderer, &view);
+    return done;
+}
+
+void bench_result_finish(struct bench_result *result)
+{
+    cli_measurement_finish(&result->measurement);
+}
+
+cJSON *bench_result_json(const struct bench_run *run, const struct bench_result *result)
+{
+    return cli_statistics_json(&result->measurement, &result->statistics,
+                               renderer_get_info(run->renderer), run->scene, run->params.width,
+                               run->params.height);
+}
+
+void bench_print_json(const cJSON *json)
+{
+    char *text = cJSON_Print(json);
+    if (text)
+        puts(text);
+    cJSON_free(text);
+}
+
+double bench_pass_ms(const struct bench_result *result, uint32_t pass)
+{
+    const struct cli_samples *samples = &result->measurement.pass_ms[pass];
+    if (2 * samples->count < result->measurement.frame_ms.count)
+        return 0.0;
+    return cli_samples_quantile(samples, 0.5);
+}
+
+uint64_t bench_memory_bytes(const struct bench_result *result)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < result->statistics.memory_count; i++)
+        bytes += result->statistics.memory[i].bytes;
+    return bytes;
+}
+
+bool bench_parse_count(const char *text, uint32_t low, uint32_t high, uint32_t *out_count)
+{
+    char *end;
+    unsigned long count = strtoul(text, &end, 10);
+    if (end == text || *end != '\0' || text[0] == '-' || count < low || count > high)
+        return false;
+    *out_count = (uint32_t)count;
+    return true;
+}
+
+bool bench_parse_size(const char *text, uint32_t *out_width, uint32_t *out_height)
+{
+    unsigned width, height;
+    char extra;
+    if (sscanf(text, "%5ux%5u%c", &width, &height, &extra) != 2 || width < VIEW_MIN_EDGE ||
+        width > VIEW_MAX_WIDTH || height < VIEW_MIN_EDGE || height > VIEW_MAX_HEIGHT)
+        return false;
+    *out_width = width;
+    *out_height = height;
+    return true;
+}
+
+bool bench_parse_quality(const char *text, enum quality *out_quality)
+{
+    for (int i = 0; i < QUALITY_COUNT; i++)
+        if (strcmp(quality_names[i], text) == 0) {
+            *out_quality = (enum quality)i;
+            return true;
+        }
+    return false;
+}

@@ -1,0 +1,328 @@
+// voxcast bench natus: what each step of voxel global illumination costs in a Cornell box, by the
+// resolution of the voxels, and with voxels that are kept or made anew for each frame.
+#include <cjson/cJSON.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "server/cli_bench.h"
+
+#define DEFAULT_FRAMES      30
+#define MAX_FRAMES          10000u
+#define WARM_UP_FRAMES      3
+#define MAX_CONVERGE_FRAMES 200u
+#define MAX_ROWS            32u
+#define COLUMN_WIDTH        10
+
+static const char usage[] =
+    "usage: voxcast bench natus [OPTIONS]\n"
+    "\n"
+    "Measures a camera that sways in a Cornell box at interactive quality, after its light has\n"
+    "converged: 1 direct light only; 2 indirect light by a voxel grid, reflection and refraction;\n"
+    "3 soft shadows, too; 4 ambient occlusion, too; 5 as 4, lit by an emissive wall alone. Tests "
+    "2\n"
+    "to 5 run with voxels that are kept and with voxels made anew for each frame. Times are\n"
+    "medians in milliseconds.\n"
+    "\n"
+    "  --scene FILE    the box (default $VOXCAST_SCENES/natus-cornell/natus-cornell.glb); the\n"
+    "                  same name with -emissive before its extension is lit by the wall\n"
+    "  --size WxH      1x1 to 3840x2160 (default 1024x768)\n"
+    "  --voxels N      only this resolution: 64, 128 or 256\n"
+    "  --frames N      frames measured in each row, 1 to 10000 (default 30)\n"
+    "  --json          JSON on stdout; the table goes to stderr\n"
+    "  --gpu WHICH     auto, software or a device index (default auto)\n";
+
+struct natus_options {
+    char scene[1024], emissive_scene[1024 + 16];
+    const char *gpu;
+    uint32_t width, height, frames;
+    enum voxel_resolution voxels; // auto: all
+    bool json;
+};
+
+static const struct natus_test {
+    uint32_t number;
+    const char *name;
+    enum gi_method method;
+    bool soft_shadows, ambient_occlusion, emissive;
+} tests[] = {
+    {1, "direct light", GI_METHOD_NONE, false, false, false},
+    {2, "indirect light", GI_METHOD_GRID, false, false, false},
+    {3, "soft shadows", GI_METHOD_GRID, true, false, false},
+    {4, "ambient occlusion", GI_METHOD_GRID, true, true, false},
+    {5, "emissive wall", GI_METHOD_GRID, true, true, true},
+};
+
+#define TEST_COUNT (sizeof(tests) / sizeof(tests[0]))
+
+struct natus_row {
+    const struct natus_test *test;
+    enum voxel_resolution voxels;
+    bool every_frame;
+    struct bench_result result;
+    struct error error; // "" if it was measured
+};
+
+struct natus {
+    const struct natus_options *options;
+    struct renderer *renderer;
+    uint32_t row_count;
+    struct natus_row rows[MAX_ROWS];
+    cJSON *json;
+};
+
+static void take_row(struct natus *natus, const struct scene *scene, const struct natus_test *test,
+                     enum voxel_resolution voxels, bool every_frame)
+{
+    struct natus_row *row = &natus->rows[natus->row_count++];
+    *row = (struct natus_row){.test = test, .voxels = voxels, .every_frame = every_frame};
+    struct bench_run run = {.renderer = natus->renderer,
+                            .scene = scene,
+                            .params = {.width = natus->options->width,
+                                       .height = natus->options->height,
+                                       .quality = QUALITY_INTERACTIVE,
+                                       .output = FRAME_OUTPUT_YCBCR},
+                            .frames = natus->options->frames,
+                            .warm_up_frames = WARM_UP_FRAMES,
+                            .max_converge_frames = MAX_CONVERGE_FRAMES};
+    struct render_settings *settings = &run.params.settings;
+    render_settings_init(settings);
+    settings->gi_method = test->method;
+    settings->voxel_resolution = voxels;
+    settings->voxel_directions = VOXEL_ISOTROPIC;
+    settings->voxelize_every_frame = every_frame;
+    settings->soft_shadows = test->soft_shadows;
+    settings->ambient_occlusion = test->ambient_occlusion;
+    cli_default_camera(scene, (float)run.params.width / (float)run.params.height,
+                       &run.params.camera);
+    fprintf(stderr, "voxcast: test %u, %s voxels%s\n", test->number, voxel_resolution_names[voxels],
+            every_frame ? ", made for each frame" : "");
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddItemToArray(natus->json, entry);
+    cJSON_AddNumberToObject(entry, "test", test->number);
+    cJSON_AddStringToObject(entry, "name", test->name);
+    cJSON_AddStringToObject(entry, "voxels", voxel_resolution_names[voxels]);
+    cJSON_AddBoolToObject(entry, "voxelize_every_frame", every_frame);
+    if (!bench_measure(&run, &row->result, &row->error)) {
+        cJSON_AddStringToObject(entry, "error", row->error.message);
+        return;
+    }
+    double median_ms = cli_samples_quantile(&row->result.measurement.frame_ms, 0.5);
+    cJSON_AddNumberToObject(entry, "frames_per_second", round(1e5 / median_ms) / 100.0);
+    cJSON_AddNumberToObject(entry, "converge_frames", row->result.converge_frames);
+    cJSON_AddNumberToObject(entry, "convergence", (double)row->result.convergence);
+    cJSON_AddItemToObject(entry, "statistics", bench_result_json(&run, &row->result));
+}
+
+// All rows of one test.
+static void run_test(struct natus *natus, const struct scene *scene, const struct natus_test *test)
+{
+    if (test->method == GI_METHOD_NONE) {
+        take_row(natus, scene, test, VOXEL_RESOLUTION_AUTO, false);
+        return;
+    }
+    for (int v = VOXEL_RESOLUTION_64; v <= VOXEL_RESOLUTION_256; v++) {
+        if (natus->options->voxels != VOXEL_RESOLUTION_AUTO &&
+            natus->options->voxels != (enum voxel_resolution)v)
+            continue;
+        take_row(natus, scene, test, (enum voxel_resolution)v, false);
+        take_row(natus, scene, test, (enum voxel_resolution)v, true);
+    }
+}
+
+// The tests of one of the two scenes.
+static bool run_scene(struct natus *natus, bool emissive, struct error *out_error)
+{
+    const struct natus_options *options = natus->options;
+    struct scene *scene =
+        scene_load(emissive ? options->emissive_scene : options->scene, out_error);
+    if (!scene)
+        return false;
+    bool done = renderer_set_scene(natus->renderer, scene, out_error);
+    for (size_t i = 0; i < TEST_COUNT && done; i++)
+        if (tests[i].emissive == emissive)
+            run_test(natus, scene, &tests[i]);
+    struct error ignored;
+    renderer_set_scene(natus->renderer, NULL, &ignored);
+    scene_destroy(&scene);
+    return done;
+}
+
+// The passes' names in two lines, broken at the first underscore.
+static void print_pass_head(FILE *file, const struct frame_statistics *statistics,
+                            const bool *shown, bool second_line)
+{
+    for (uint32_t i = 0; i < statistics->pass_count; i++) {
+        if (!shown[i])
+            continue;
+        const char *name = statistics->passes[i].name;
+        const char *underscore = strchr(name, '_');
+        char line[32];
+        if (!underscore)
+            snprintf(line, sizeof(line), "%s", second_line ? name : "");
+        else if (second_line)
+            snprintf(line, sizeof(line), "%s", underscore + 1);
+        else
+            snprintf(line, sizeof(line), "%.*s", (int)(underscore - name), name);
+        fprintf(file, " %*s", COLUMN_WIDTH, line);
+    }
+    fputc('\n', file);
+}
+
+static void print_row(FILE *file, const struct natus_row *row, const bool *shown)
+{
+    fprintf(file, "%u %-18s %6s %10s", row->test->number, row->test->name,
+            row->voxels == VOXEL_RESOLUTION_AUTO ? "-" : voxel_resolution_names[row->voxels],
+            row->voxels == VOXEL_RESOLUTION_AUTO ? "-"
+            : row->every_frame                   ? "each frame"
+                                                 : "kept");
+    if (row->error.message[0]) {
+        fprintf(file, "  failed: %s\n", row->error.message);
+        return;
+    }
+    double median_ms = cli_samples_quantile(&row->result.measurement.frame_ms, 0.5);
+    fprintf(file, " %8.1f %7.1f %7.1f", median_ms, 1e3 / median_ms,
+            (double)bench_memory_bytes(&row->result) / 1048576.0);
+    for (uint32_t i = 0; i < row->result.statistics.pass_count; i++) {
+        double pass_ms = bench_pass_ms(&row->result, i);
+        if (!shown[i])
+            continue;
+        if (pass_ms > 0.0)
+            fprintf(file, " %*.2f", COLUMN_WIDTH, pass_ms);
+        else
+            fprintf(file, " %*s", COLUMN_WIDTH, "-");
+    }
+    fputc('\n', file);
+}
+
+static void print_table(FILE *file, const struct natus *natus)
+{
+    bool shown[RENDERER_MAX_PASSES] = {false};
+    const struct frame_statistics *statistics = &natus->rows[0].result.statistics;
+    for (uint32_t i = 0; i < natus->row_count; i++)
+        for (uint32_t p = 0; p < natus->rows[i].result.statistics.pass_count; p++)
+            shown[p] = shown[p] || bench_pass_ms(&natus->rows[i].result, p) > 0.0;
+    fprintf(file, "%s, %ux%u, interactive quality\n\n",
+            renderer_get_info(natus->renderer)->gl_renderer, natus->options->width,
+            natus->options->height);
+    fprintf(file, "%20s %6s %10s %8s %7s %7s", "", "", "", "frame", "", "memory");
+    print_pass_head(file, statistics, shown, false);
+    fprintf(file, "%-20s %6s %10s %8s %7s %7s", "test", "voxels", "voxels are", "ms", "fps", "MiB");
+    print_pass_head(file, statistics, shown, true);
+    for (uint32_t i = 0; i < natus->row_count; i++)
+        print_row(file, &natus->rows[i], shown);
+}
+
+static bool find_scenes(const char *given, struct natus_options *options, struct error *out_error)
+{
+    const char *folder = getenv("VOXCAST_SCENES");
+    if (given)
+        snprintf(options->scene, sizeof(options->scene), "%s", given);
+    else if (folder)
+        snprintf(options->scene, sizeof(options->scene), "%s/natus-cornell/natus-cornell.glb",
+                 folder);
+    else
+        return error_set(out_error, "--scene FILE is needed, or VOXCAST_SCENES in the environment");
+    const char *slash = strrchr(options->scene, '/');
+    const char *dot = strrchr(slash ? slash : options->scene, '.');
+    int stem = dot ? (int)(dot - options->scene) : (int)strlen(options->scene);
+    snprintf(options->emissive_scene, sizeof(options->emissive_scene), "%.*s-emissive%s", stem,
+             options->scene, options->scene + stem);
+    return true;
+}
+
+static bool parse_voxels(const char *text, enum voxel_resolution *out_voxels)
+{
+    for (int i = VOXEL_RESOLUTION_64; i < VOXEL_RESOLUTION_COUNT; i++)
+        if (strcmp(text, voxel_resolution_names[i]) == 0) {
+            *out_voxels = (enum voxel_resolution)i;
+            return true;
+        }
+    return false;
+}
+
+// False with a message, or with `out_help` if help was asked for.
+static bool parse_options(int argc, char **argv, struct natus_options *options, bool *out_help,
+                          struct error *out_error)
+{
+    static const struct option long_options[] = {
+        {"scene", required_argument, NULL, 'i'},  {"size", required_argument, NULL, 's'},
+        {"voxels", required_argument, NULL, 'v'}, {"frames", required_argument, NULL, 'n'},
+        {"json", no_argument, NULL, 'j'},         {"gpu", required_argument, NULL, 'G'},
+        {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0}};
+    *options = (struct natus_options){
+        .gpu = "auto", .width = 1024, .height = 768, .frames = DEFAULT_FRAMES};
+    *out_help = false;
+    const char *scene = NULL;
+    opterr = 0;
+    optind = 1;
+    int option;
+    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
+        *out_help = option == 'h';
+        if (*out_help)
+            return false;
+        if (option == '?')
+            return error_set(out_error, "unknown or incomplete option \"%s\"", argv[optind - 1]);
+        if (option == 'i')
+            scene = optarg;
+        if (option == 's' && !bench_parse_size(optarg, &options->width, &options->height))
+            return error_set(out_error, "--size is \"%s\"; allowed: WxH up to %ux%u", optarg,
+                             VIEW_MAX_WIDTH, VIEW_MAX_HEIGHT);
+        if (option == 'v' && !parse_voxels(optarg, &options->voxels))
+            return error_set(out_error, "--voxels is \"%s\"; allowed: 64, 128, 256", optarg);
+        if (option == 'n' && !bench_parse_count(optarg, 1, MAX_FRAMES, &options->frames))
+            return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %u", optarg, MAX_FRAMES);
+        options->json = options->json || option == 'j';
+        if (option == 'G')
+            options->gpu = optarg;
+    }
+    if (optind < argc)
+        return error_set(out_error, "unexpected argument \"%s\"", argv[optind]);
+    return find_scenes(scene, options, out_error);
+}
+
+static int run_all(struct natus *natus)
+{
+    const struct natus_options *options = natus->options;
+    struct error error = {""};
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "gl_renderer", renderer_get_info(natus->renderer)->gl_renderer);
+    cJSON_AddStringToObject(root, "scene", options->scene);
+    cJSON_AddStringToObject(root, "emissive_scene", options->emissive_scene);
+    natus->json = cJSON_AddArrayToObject(root, "tests");
+    bool done = run_scene(natus, false, &error) && run_scene(natus, true, &error);
+    if (done) {
+        print_table(options->json ? stderr : stdout, natus);
+        if (options->json)
+            bench_print_json(root);
+    }
+    for (uint32_t i = 0; i < natus->row_count; i++)
+        bench_result_finish(&natus->rows[i].result);
+    cJSON_Delete(root);
+    return done ? 0 : cli_fail(CLI_EXIT_SCENE, "%s", error.message);
+}
+
+int bench_natus(int argc, char **argv)
+{
+    struct natus_options options;
+    struct error error = {""};
+    bool help;
+    if (!parse_options(argc, argv, &options, &help, &error)) {
+        if (!help)
+            return cli_fail(CLI_EXIT_USAGE, "%s", error.message);
+        fputs(usage, stdout);
+        return 0;
+    }
+    struct natus *natus = calloc(1, sizeof(*natus)); // too large for the stack
+    if (!natus)
+        return cli_fail(CLI_EXIT_RENDER, "out of memory");
+    natus->options = &options;
+    natus->renderer = renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);
+    int status = natus->renderer ? run_all(natus) : cli_fail(CLI_EXIT_RENDER, "%s", error.message);
+    if (natus->renderer)
+        renderer_destroy(&natus->renderer);
+    free(natus);
+    return status;
+}

@@ -1,0 +1,65 @@
+// Frames that are waited for: one, the next of a moving camera, or as many as a picture needs.
+#include "server/cli.h"
+
+bool cli_render_next_frame(struct renderer *renderer, struct view *view,
+                           const struct frame_params *params, struct frame_pixels *out_pixels,
+                           struct error *out_error)
+{
+    enum render_result result = renderer_view_draw(renderer, view, params, out_error);
+    if (result == RENDER_UNCHANGED) {
+        renderer_view_invalidate(view);
+        result = renderer_view_draw(renderer, view, params, out_error);
+    }
+    if (result != RENDER_DRAWN)
+        return false;
+    return renderer_view_collect(renderer, view, true, out_pixels) ||
+           error_set(out_error, "the GPU did not finish the frame");
+}
+
+bool cli_render_frame(struct renderer *renderer, struct view *view,
+                      const struct frame_params *params, struct frame_pixels *out_pixels,
+                      struct error *out_error)
+{
+    renderer_view_invalidate(view);
+    return cli_render_next_frame(renderer, view, params, out_pixels, out_error);
+}
+
+// Draws one frame more and keeps its pixels instead of the last one's.
+static enum render_result render_one_more(struct cli_still *still, struct error *out_error)
+{
+    enum render_result result =
+        renderer_view_draw(still->renderer, still->view, still->params, out_error);
+    if (result != RENDER_DRAWN)
+        return result;
+    if (still->frame_count > 0)
+        renderer_view_release(still->renderer, still->view);
+    still->frame_count++;
+    if (!renderer_view_collect(still->renderer, still->view, true, &still->pixels)) {
+        still->frame_count = 0; // nothing is held
+        error_set(out_error, "the GPU did not finish the frame");
+        return RENDER_FAILED;
+    }
+    struct frame_statistics statistics;
+    renderer_view_get_statistics(still->renderer, still->view, &statistics);
+    if (still->measurement && !cli_measurement_add(still->measurement, &statistics)) {
+        error_set(out_error, "out of memory");
+        return RENDER_FAILED;
+    }
+    return RENDER_DRAWN;
+}
+
+bool cli_render_still(struct cli_still *still, struct error *out_error)
+{
+    still->frame_count = 0;
+    still->converged = false;
+    renderer_view_invalidate(still->view);
+    enum render_result result = RENDER_DRAWN;
+    while (result == RENDER_DRAWN && still->frame_count < still->max_frames)
+        result = render_one_more(still, out_error);
+    still->converged = result == RENDER_UNCHANGED;
+    if (result == RENDER_DRAWN || result == RENDER_UNCHANGED)
+        return true;
+    if (still->frame_count > 0)
+        renderer_view_release(still->renderer, still->view);
+    return false;
+}

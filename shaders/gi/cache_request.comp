@@ -1,0 +1,19 @@
+// Pixels ask for the voxel faces they see: one pixel of each REQUEST_EDGE^2, another each frame. In:
+// G-buffer, cells. Out: the faces' newest request.
+#include "lib/gbuffer.glsl"
+#include "lib/irradiance.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+const uint REQUEST_EDGE = 4u;
+
+void main()
+{
+    uint turn = (voxels.cache.y * 5u) & 15u;
+    uvec2 pixel = gl_GlobalInvocationID.xy * REQUEST_EDGE + uvec2(turn & 3u, turn >> 2);
+    if (any(greaterThanEqual(pixel, frame.size.xy)))
+        return;
+    surface s = gbuffer_load(pixel);
+    if (s.shading < SHADE_UNLIT)
+        request_faces(s.position, s.geometric_normal, voxels.cache.y);
+}

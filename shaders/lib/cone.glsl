@@ -1,0 +1,138 @@
+// The one cone through the voxels that every kind of indirect light is gathered with.
+//
+// Voxels are an absorbing and emitting volume of flakes that face six ways: a ray of direction d
+// crosses optical depth sum |d_i| depth_i, taken from the three faces that it comes upon, so a wall
+// hides what is behind it whatever the angle, and no surface hides what it faces. (Six faces as in
+// Crassin et al. 2011, "Interactive Indirect Illumination Using Voxel Cone Tracing"; flakes as in
+// Heitz et al. 2015, "The SGGX Microflake Distribution".) Steps attenuate by exp(-depth), so their
+// length does not change what a wall lets through.
+#include "lib/voxel.glsl"
+
+layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
+
+struct cone {
+    vec3 origin;    // relative to the anchor, m
+    vec3 direction; // unit
+    float tangent;  // of the half-angle
+    float step;     // over the diameter
+    float reach_m;  // end
+};
+
+struct cone_light {
+    vec3 light;          // in units of the volume's scale
+    float transmittance; // share that leaves the volume
+    float occlusion;     // of 1, near hits counting more: for ambient occlusion
+};
+
+const uint CONE_MAX_STEPS = 256u;
+const float CONE_OPAQUE = 0.004;
+
+vec3 voxel_position(vec3 world)
+{
+    return world - voxels.anchor.xyz;
+}
+
+// How far inside a level a place is, in its voxels; negative outside what filtering can reach. Where
+// addresses wrap, the outermost half voxel would be filtered with the other side.
+float inside_level(uint level, vec3 position)
+{
+    ivec4 origin = voxels.levels[level].origin;
+    vec3 at = position * voxels.levels[level].size.y - vec3(origin.xyz);
+    vec3 rim = min(at, float(origin.w) - at);
+    return min(rim.x, min(rim.y, rim.z)) - 0.5 * float(voxels.levels[level].index.z);
+}
+
+// Filtered light and optical depth across a voxel of a level, for a ray of the given direction.
+vec4 sample_level(uint level, vec3 position, vec3 direction)
+{
+    ivec4 origin = voxels.levels[level].origin;
+    ivec4 texels = voxels.levels[level].texels;
+    vec3 at = position * voxels.levels[level].size.y;
+    float edge = float(origin.w);
+    at = voxels.levels[level].index.z != 0u ? at - floor(at / edge) * edge : at - vec3(origin.xyz);
+    vec3 scale = 1.0 / vec3(textureSize(voxel_radiance, 0));
+    vec3 uvw = (at + vec3(texels.xyz)) * scale;
+#if VOXEL_DIRECTIONS == 1
+    return textureLod(voxel_radiance, uvw, 0.0);
+#else
+    float face = float(texels.w) * scale.x;
+    vec3 size = abs(direction);
+    float x = direction.x > 0.0 ? face : 0.0;
+    float y = direction.y > 0.0 ? 3.0 * face : 2.0 * face;
+    float z = direction.z > 0.0 ? 5.0 * face : 4.0 * face;
+    return size.x * textureLod(voxel_radiance, vec3(uvw.x + x, uvw.yz), 0.0) +
+           size.y * textureLod(voxel_radiance, vec3(uvw.x + y, uvw.yz), 0.0) +
+           size.z * textureLod(voxel_radiance, vec3(uvw.x + z, uvw.yz), 0.0);
+#endif
+}
+
+// Light and optical depth per metre at a place, filtered over `diameter`. `out_level` is the level
+// that was read (the finer of two), or the number of levels beyond the coarsest.
+vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_level)
+{
+    float wanted = max(log2(diameter * voxels.levels[0].size.y), 0.0);
+    uint last = voxels.counts.x - 1u;
+    uint level = min(uint(wanted), last);
+    float blend = min(wanted, float(last)) - float(level);
+    float room = inside_level(level, position);
+    while (room < 0.0 && level < voxels.counts.x) {
+        level++;
+        blend = 0.0;
+        room = level < voxels.counts.x ? inside_level(level, position) : 0.0;
+    }
+    out_level = level;
+    if (level > last)
+        return vec4(0.0);
+    // Where a clip level ends, the next one fades in.
+    if (voxels.levels[level].index.z != 0u && level < last)
+        blend = max(blend, 1.0 - room * 0.25);
+#if CONE_SMOOTH
+    vec4 fine = sample_level(level, position, direction) * voxels.levels[level].size.y;
+    uint coarser = min(level + 1u, last);
+    vec4 coarse = sample_level(coarser, position, direction) * voxels.levels[coarser].size.y;
+    return mix(fine, coarse, level == last ? 0.0 : blend);
+#else
+    if (blend > 0.5 && level < last)
+        level++;
+    return sample_level(level, position, direction) * voxels.levels[level].size.y;
+#endif
+}
+
+cone_light trace_cone(cone c, float occlusion_reach_m)
+{
+    cone_light result;
+    result.light = vec3(0.0);
+    result.occlusion = 0.0;
+    float passed = 1.0;
+    float t = 0.0;
+    float voxel = voxels.levels[0].size.x;
+    for (uint i = 0u; i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE; i++) {
+        float length_m = c.step * max(voxel, 2.0 * c.tangent * t);
+        float middle = t + 0.5 * length_m;
+        uint level;
+        // Never narrower than the step, so that nothing falls between two samples.
+        float diameter = max(2.0 * c.tangent * middle, length_m);
+        vec4 value = sample_voxels(c.origin + middle * c.direction, c.direction, diameter, level);
+        if (level >= voxels.counts.x)
+            break;
+        float depth = value.a * length_m;
+        float absorbed = passed * (1.0 - exp(-depth));
+        result.light += value.rgb * (absorbed / max(value.a, 1e-12));
+        result.occlusion += absorbed * max(1.0 - middle / occlusion_reach_m, 0.0);
+        passed -= absorbed;
+        t += length_m;
+        voxel = voxels.levels[level].size.x;
+    }
+    result.transmittance = passed > CONE_OPAQUE ? passed : 0.0;
+    return result;
+}
+
+// An orthonormal frame about n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+mat3 frame_about(vec3 n)
+{
+    float turn = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (turn + n.z);
+    float b = n.x * n.y * a;
+    return mat3(vec3(1.0 + turn * n.x * n.x * a, turn * b, -turn * n.x),
+                vec3(b, turn + n.y * n.y * a, -n.y), n);
+}

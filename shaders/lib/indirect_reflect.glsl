@@ -1,0 +1,32 @@
+// What a surface makes of indirect irradiance. The occlusion map applies to this alone, since it
+// stands for detail that neither shadow maps nor voxels hold.
+#if SPECULAR
+#include "lib/environment.glsl"
+#endif
+#include "lib/voxel.glsl"
+
+// `light`: irradiance / pi in units of the volume's scale, and openness. Radiance in cd/m^2.
+vec3 reflect_irradiance(surface s, vec4 light)
+{
+    vec3 reflectance = s.base_color;
+#if SPECULAR
+    float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
+    vec2 scale_bias = environment_brdf(s.roughness, n_v);
+    vec3 layer = s.f0 * scale_bias.x + s.f90 * scale_bias.y;
+    float kept = 1.0 - max(layer.r, max(layer.g, layer.b));
+    reflectance = s.base_color * ((1.0 - s.metallic) * kept);
+    // Lobes that are too wide for a cone of their own see about what the hemisphere sees.
+    vec3 f0 = mix(s.f0, s.base_color, s.metallic);
+    float f90 = mix(s.f90, 1.0, s.metallic);
+    vec3 glossy = f0 * scale_bias.x + f90 * scale_bias.y;
+#if INDIRECT_SPECULAR
+    glossy *= step(voxels.light.z, s.roughness);
+#endif
+    reflectance += glossy;
+#endif
+    float open = s.occlusion;
+#if AMBIENT_OCCLUSION
+    open *= light.a;
+#endif
+    return reflectance * light.rgb * (open * voxels.anchor.w * voxels.light.y);
+}

@@ -1,0 +1,97 @@
+// Adds what a triangle has in a voxel to the voxel's surfels.
+#include "lib/voxel_work.glsl"
+
+layout(std430, binding = BIND_VOXEL_INDEX) coherent buffer voxel_index_storage
+{
+    uint voxel_index[];
+};
+
+layout(std430, binding = BIND_SURFELS) coherent buffer surfel_storage
+{
+    uint surfels[]; // SURFEL_WORDS each
+};
+
+struct voxel_fragment {
+    uint mask;
+    uint weight;
+    vec3 normal; // unit
+    vec3 place;  // in the voxel, 0 to 1
+    float opacity;
+    vec3 color;
+    vec3 emission;
+};
+
+uint allocate_surfel(uint key)
+{
+    uint surfel;
+    int left = int(atomicAdd(counters[COUNTER_FREE_SURFELS], 0xffffffffu));
+    if (left > 0) {
+        surfel = free_words[voxels.counts.z + uint(left) - 1u];
+    } else {
+        surfel = atomicAdd(counters[COUNTER_SURFELS], 1u);
+        if (surfel >= voxels.counts.w) {
+            atomicOr(counters[COUNTER_OVERFLOW], 1u);
+            return VOXEL_NONE;
+        }
+    }
+    for (uint i = 0u; i < SURFEL_WORDS; i++)
+        surfels[surfel * SURFEL_WORDS + i] = 0u;
+    surfels[surfel * SURFEL_WORDS + SURFEL_KEY] = key;
+    return surfel;
+}
+
+// The surfel of a key in a voxel's list; `spare` is one that was taken but not needed, or NONE.
+uint find_surfel(uint index_word, uint key, inout uint spare)
+{
+    uint seen = VOXEL_NONE; // head of the part that was searched before
+    for (;;) {
+        uint entry = atomicOr(voxel_index[index_word], 0u);
+        uint head = entry == 0u ? VOXEL_NONE : entry & ~VOXEL_TAG_SURFEL;
+        for (uint at = head; at != VOXEL_NONE && at != seen;
+             at = surfels[at * SURFEL_WORDS + SURFEL_NEXT])
+            if (surfels[at * SURFEL_WORDS + SURFEL_KEY] == key)
+                return at;
+        seen = head;
+        if (spare == VOXEL_NONE)
+            spare = allocate_surfel(key);
+        if (spare == VOXEL_NONE)
+            return VOXEL_NONE;
+        surfels[spare * SURFEL_WORDS + SURFEL_KEY] = key;
+        surfels[spare * SURFEL_WORDS + SURFEL_NEXT] = head;
+        memoryBarrierBuffer();
+        if (atomicCompSwap(voxel_index[index_word], entry, spare | VOXEL_TAG_SURFEL) == entry) {
+            uint taken = spare;
+            spare = VOXEL_NONE;
+            return taken;
+        }
+    }
+}
+
+void give_back_surfel(uint spare)
+{
+    if (spare != VOXEL_NONE)
+        free_words[voxels.counts.z + voxels.counts.w +
+                   atomicAdd(counters[COUNTER_RETURNED_SURFELS], 1u)] = spare;
+}
+
+void add3(uint word, vec3 value, float scale, uint weight)
+{
+    ivec3 whole = ivec3(round(value * scale)) * int(weight);
+    atomicAdd(surfels[word], uint(whole.x));
+    atomicAdd(surfels[word + 1u], uint(whole.y));
+    atomicAdd(surfels[word + 2u], uint(whole.z));
+}
+
+void add_fragment(uint surfel, voxel_fragment f)
+{
+    uint word = surfel * SURFEL_WORDS;
+    atomicOr(surfels[word + SURFEL_MASK], f.mask);
+    atomicAdd(surfels[word + SURFEL_WEIGHT], f.weight);
+    add3(word + SURFEL_NORMAL, f.normal, 127.0, f.weight);
+    add3(word + SURFEL_PLACE, f.place, 255.0, f.weight);
+    atomicAdd(surfels[word + SURFEL_OPACITY], uint(round(f.opacity * 255.0)) * f.weight);
+#if VOXEL_COLORS
+    add3(word + SURFEL_COLOR, f.color, 255.0, f.weight);
+    add3(word + SURFEL_EMISSION, f.emission, 255.0, f.weight);
+#endif
+}

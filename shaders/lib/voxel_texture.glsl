@@ -1,0 +1,25 @@
+// Writes the radiance texture: premultiplied by optical depth, rgb = radiance * depth / scale and
+// a = optical depth across a voxel, so that filtering keeps what lies behind each other apart.
+#include "lib/voxel.glsl"
+
+layout(binding = IMAGE_VOXEL_RADIANCE, rgba16f) uniform image3D voxel_image;
+
+// Faces lie along X, levels along Y. Where addresses wrap, a texel at the rim is repeated in the
+// border on the other side, so that trilinear filtering sees its neighbours across the seam.
+void store_voxel_face(uint level, ivec3 address, uint face, vec4 value)
+{
+    ivec4 texels = voxels.levels[level].texels;
+    int edge = voxels.levels[level].origin.w;
+    ivec3 base = texels.xyz + ivec3(texels.w * int(face), 0, 0);
+    value.rgb = min(value.rgb, vec3(65504.0));
+    imageStore(voxel_image, base + address, value);
+    if (voxels.levels[level].index.z == 0u)
+        return;
+    ivec3 shift = ivec3(equal(address, ivec3(0))) * edge -
+                  ivec3(equal(address, ivec3(edge - 1))) * edge;
+    uint copies = (shift.x != 0 ? 1u : 0u) | (shift.y != 0 ? 2u : 0u) | (shift.z != 0 ? 4u : 0u);
+    for (uint subset = copies; subset != 0u; subset = (subset - 1u) & copies) {
+        ivec3 chosen = ivec3(subset & 1u, (subset >> 1) & 1u, subset >> 2);
+        imageStore(voxel_image, base + address + shift * chosen, value);
+    }
+}

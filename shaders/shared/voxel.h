@@ -1,0 +1,123 @@
+// Layout of the voxels' buffers: stated once for C and GLSL. ARCHITECTURE.md tells what they are
+// for.
+#ifndef VOXCAST_SHADERS_SHARED_VOXEL_H
+#define VOXCAST_SHADERS_SHARED_VOXEL_H
+
+#include "shared/types.h"
+
+#define VOXEL_MAX_LEVELS 8
+#define VOXEL_MAX_CONES  32
+#define VOXEL_FACES      6
+
+// Optical depth across a voxel that is covered all over: what leaks through is e^-8, 0.03 %.
+#define VOXEL_MAX_DEPTH 8.0
+
+// A voxel's word in the index: 0 empty, 1 + cell, or while geometry is being added the first
+// surfel.
+#define VOXEL_TAG_SURFEL 0x80000000u
+#define VOXEL_NONE       0xffffffffu
+
+// A cell is an occupied voxel. Word 0: slot in its level | level << 28, or VOXEL_NONE; word 1:
+// first surfel. Then CELL_FACE_WORDS for each face: the mean normal and place of its surfels,
+// irradiance over pi and its state.
+#define CELL_WORDS        40u
+#define CELL_SURFEL       1u
+#define CELL_FACES        4u
+#define CELL_FACE_WORDS   6u
+#define CELL_FACE_NORMAL  0u // octahedral, 2 x 16 bits; VOXEL_NONE: the face has no surface
+#define CELL_FACE_PLACE   1u // within the voxel, 3 x 10 bits
+#define CELL_FACE_LIGHT   2u // two words: irradiance / pi / scale as 3 halves, openness as a half
+#define CELL_FACE_STATE   4u // generation (16 bits) | change << 16 (8 bits) | flags << 24
+#define CELL_FACE_REQUEST 5u // frame of the newest request
+#define CELL_LEVEL_BIT    28
+#define CELL_SLOT_MASK    0x0fffffffu
+#define FACE_FLAG_VALID   0x01000000u
+#define FACE_FLAG_TRACED  0x02000000u // by cones, not inherited from another level
+
+// A surfel gathers what a surface has in a voxel, of those triangles whose dominant axis and side
+// (0 to 5, as faces) agree. Sums are integers, so that no order of triangles changes them.
+#define SURFEL_WORDS        18u
+#define SURFEL_NEXT         0u
+#define SURFEL_KEY          1u // surface * 8 + face
+#define SURFEL_MASK         2u // bit x + 2 y + 4 z for each half of the voxel that is overlapped
+#define SURFEL_WEIGHT       3u
+#define SURFEL_NORMAL       4u   // 3 sums of weight * normal * 127
+#define SURFEL_PLACE        7u   // 3 sums of weight * place in the voxel * 255
+#define SURFEL_OPACITY      10u  // sum of weight * alpha * 255
+#define SURFEL_COLOR        11u  // 3 sums of weight * base colour texture * 255
+#define SURFEL_EMISSION     14u  // 3 sums of weight * emissive texture * 255
+#define SURFEL_WEIGHT_SCALE 64.0 // per square of the voxel's edge; at least 1 a triangle
+
+// Words of the counters. Lists follow, COUNTER_LIST_WORDS each: groups x, y, z of an indirect
+// dispatch and the number of entries.
+#define COUNTER_CELLS            0
+#define COUNTER_FREE_CELLS       1
+#define COUNTER_SURFELS          2
+#define COUNTER_FREE_SURFELS     3
+#define COUNTER_RETURNED_SURFELS 4
+#define COUNTER_OVERFLOW         5
+#define COUNTER_LIST_OVERFLOW    6
+#define COUNTER_CACHE_LEFT       7 // entries that the newest selection found stale
+#define COUNTER_CACHE_CHANGE     8 // largest change of an entry in this generation (bits of a float)
+#define COUNTER_CACHE_TRACED     9
+#define COUNTER_CACHE_PEAK       10 // largest light of one, likewise
+#define COUNTER_TILES            12 // arguments of the pass over large triangles
+#define COUNTER_CACHE_ARGUMENTS  16
+#define COUNTER_CACHE_CLASSES    20 // entries of each class of urgency
+#define COUNTER_LISTS            32
+#define COUNTER_LIST_WORDS       4
+#define COUNTER_COUNT            (COUNTER_LISTS + VOXEL_MAX_LEVELS * COUNTER_LIST_WORDS)
+
+#define CACHE_CLASSES 6u
+
+// List 0 has the cells that are lit, of all levels; list n the voxels of level n that are filtered
+// from the finer level.
+#define LIST_LIT 0
+
+// Triangles that span more columns of voxels are cut into tiles of so many columns.
+#define VOXEL_SMALL_COLUMNS 12
+#define VOXEL_TILE_EDGE     8
+#define VOXEL_MAX_REGIONS   64
+#define VOXEL_CHUNK         64 // triangles
+
+#define SURFACE_MATERIAL_MASK 0x0fffffffu
+#define SURFACE_LIT_DIRECTLY  0x80000000u // its emission reaches others as a planar emitter's
+
+struct voxel_level_block {
+    ivec4 origin; // lowest voxel in voxels of this level from the anchor; w: voxels along an edge
+    ivec4 inner;  // lowest voxel that the finer level fills; w: how many along an edge, 0 none
+    ivec4 texels; // first texel of face 0 behind the border; w: texels from face to face
+    uvec4 index;  // first word in the index; log2 of the edge; 1 if addresses wrap; unused
+    vec4 size;    // voxel edge in m, its inverse, unused, unused
+};
+
+#ifdef __STDC__
+#define BLOCK_STRUCT(name) struct name
+#else
+#define BLOCK_STRUCT(name) name
+#endif
+
+struct voxel_block {
+    vec4 anchor;  // world; w: scale: radiance is stored divided by it
+    uvec4 counts; // levels, faces in the texture, capacity of cells, capacity of surfels
+    uvec4 work;   // regions, voxels in them, chunks, capacity of tiles
+    uvec4 cache;  // generation, frame, budget of entries, 1 if bounces feed back
+    vec4 light;   // reach of ambient occlusion in m, intensity of indirect light, unused, unused
+    vec4 march;   // of the cache's cones: step over diameter, start offset in voxels, their number,
+                  // tangent of the half-angle
+    vec4 pixel_march; // of the cones that start at pixels, likewise
+    uvec4 options; // capacity of lists; first level to light, or the one to filter; end of those;
+                   // instances
+    vec4 cones[VOXEL_MAX_CONES]; // direction about +Z; w: weight, cosine over the sum of cosines
+    vec4 pixel_cones[VOXEL_MAX_CONES];
+    BLOCK_STRUCT(voxel_level_block) levels[VOXEL_MAX_LEVELS];
+};
+
+#ifdef __STDC__
+static_assert(sizeof(struct voxel_level_block) == 5 * sizeof(vec4), "no padding");
+static_assert(sizeof(struct voxel_block) ==
+                  (8 + 2 * VOXEL_MAX_CONES + 5 * VOXEL_MAX_LEVELS) * sizeof(vec4),
+              "no padding");
+#endif
+
+#endif

@@ -1,0 +1,129 @@
+// Fills voxels of a level from the eight below them in the finer level, so that a wide cone reads one
+// coarse texel. In: list of voxels, radiance texture, cells. Out: radiance texture, cells of clip
+// levels.
+//
+// For each face the two voxels of a column are seen one behind the other, then the four columns are
+// averaged (anisotropic pre-integration, Crassin et al. 2011). What is kept is optical depth.
+#include "lib/voxel_cells.glsl"
+#include "lib/voxel_texture.glsl"
+
+layout(local_size_x = LINEAR_GROUP) in;
+
+layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
+
+layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
+{
+    uint list_words[];
+};
+
+layout(std430, binding = BIND_VOXEL_COUNTERS) readonly buffer voxel_counter_storage
+{
+    uint counters[];
+};
+
+#define LEVEL voxels.options.y
+#define FINER (LEVEL - 1u)
+
+vec4 fetch_finer(ivec3 voxel, uint face)
+{
+    ivec4 texels = voxels.levels[FINER].texels;
+    ivec3 address = slot_address(FINER, voxel_slot(FINER, voxel));
+    return texelFetch(voxel_radiance, texels.xyz + ivec3(texels.w * int(face), 0, 0) + address, 0);
+}
+
+// Radiance seen and share covered through one texel.
+vec4 seen_through(vec4 texel)
+{
+    float covered = 1.0 - exp(-texel.a);
+    return vec4(texel.rgb * (covered / max(texel.a, 1e-9)), covered);
+}
+
+vec4 filtered_face(ivec3 corner, uint face)
+{
+    uint axis = face >> 1u;
+    ivec3 along = ivec3(axis == 0u, axis == 1u, axis == 2u);
+    ivec3 right = along.zxy;
+    ivec3 up = along.yzx;
+    bool positive = (face & 1u) == 0u;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        ivec3 at = corner + right * (i & 1) + up * (i >> 1);
+        vec4 front = seen_through(fetch_finer(at + (positive ? along : ivec3(0)), face));
+        vec4 back = seen_through(fetch_finer(at + (positive ? ivec3(0) : along), face));
+        sum += front + back * (1.0 - front.a);
+    }
+    sum *= 0.25;
+    float depth = min(-log(max(1.0 - sum.a, 1e-9)), float(VOXEL_MAX_DEPTH));
+    return vec4(sum.rgb * (depth / max(sum.a, 1e-9)), depth);
+}
+
+#if VOXEL_DIRECTIONS == 1
+// One value for all directions: the mean of the six.
+vec4 filtered_mean(ivec3 corner)
+{
+    vec4 sum = vec4(0.0);
+    for (uint axis = 0u; axis < 3u; axis++)
+        for (uint side = 0u; side < 2u; side++) {
+            // The isotropic texture holds one face; only the order of front and back differs.
+            vec4 value = filtered_face(corner, 2u * axis + side);
+            sum += value;
+        }
+    return sum / 6.0;
+}
+#endif
+
+#if CLIP_LEVELS
+// The mean irradiance of the voxels below, so that a level that comes to the fore is lit at once.
+void inherit_irradiance(uint slot, ivec3 corner)
+{
+    uint cell = voxel_index[voxels.levels[LEVEL].index.x + slot] - 1u;
+    if (cell == VOXEL_NONE)
+        return;
+    for (uint face = 0u; face < VOXEL_FACES; face++) {
+        vec4 sum = vec4(0.0);
+        float count = 0.0;
+        uint normal = VOXEL_NONE;
+        for (int i = 0; i < 8; i++) {
+            uint child = find_cell(FINER, corner + ivec3(i & 1, (i >> 1) & 1, i >> 2));
+            if (child == VOXEL_NONE)
+                continue;
+            uint from = cell_face(child, face);
+            bool valid = cells[from + CELL_FACE_NORMAL] != VOXEL_NONE &&
+                         (cells[from + CELL_FACE_STATE] & FACE_FLAG_VALID) != 0u;
+            if (!valid)
+                continue;
+            normal = cells[from + CELL_FACE_NORMAL];
+            sum += vec4(unpackHalf2x16(cells[from + CELL_FACE_LIGHT]),
+                        unpackHalf2x16(cells[from + CELL_FACE_LIGHT + 1u]));
+            count += 1.0;
+        }
+        if (count == 0.0)
+            continue;
+        uint to = cell_face(cell, face);
+        sum /= count;
+        cells[to + CELL_FACE_NORMAL] = normal;
+        cells[to + CELL_FACE_LIGHT] = packHalf2x16(sum.xy);
+        cells[to + CELL_FACE_LIGHT + 1u] = packHalf2x16(sum.zw);
+        cells[to + CELL_FACE_STATE] = FACE_FLAG_VALID;
+    }
+}
+#endif
+
+void main()
+{
+    uint number = gl_GlobalInvocationID.x;
+    if (number >= counters[COUNTER_LISTS + LEVEL * COUNTER_LIST_WORDS + 3u])
+        return;
+    uint slot = list_words[LEVEL * voxels.options.x + number];
+    ivec3 corner = slot_voxel(LEVEL, slot) * 2;
+    ivec3 address = slot_address(LEVEL, slot);
+#if VOXEL_DIRECTIONS == 1
+    store_voxel_face(LEVEL, address, 0u, filtered_mean(corner));
+#else
+    for (uint face = 0u; face < VOXEL_FACES; face++)
+        store_voxel_face(LEVEL, address, face, filtered_face(corner, face));
+#endif
+#if CLIP_LEVELS
+    inherit_irradiance(slot, corner);
+#endif
+}

@@ -1,0 +1,193 @@
+// Lights the occupied voxels of some levels. In: list of cells, surfels, materials, lights, shadow maps,
+// irradiance cache. Out: radiance texture, and each face's normal and place.
+//
+// A face's radiance is the mean of the surfels that face its way: emission, and reflectance times
+// direct and (FEEDBACK 1) indirect irradiance. Materials are looked up here, so that editing one
+// does not voxelize anything anew.
+#define CELLS_ACCESS
+#include "lib/voxel_cells.glsl"
+#include "lib/voxel_texture.glsl"
+#define SHADOW_TAPS 2u
+#define VIEWLESS 1
+#include "lib/lighting.glsl"
+
+layout(local_size_x = LINEAR_GROUP) in;
+
+layout(std430, binding = BIND_SURFELS) readonly buffer surfel_storage
+{
+    uint surfels[];
+};
+
+layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
+{
+    uint list_words[];
+};
+
+layout(std430, binding = BIND_VOXEL_COUNTERS) readonly buffer voxel_counter_storage
+{
+    uint counters[];
+};
+
+layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
+{
+    uint surfaces[]; // those of instances, then material and flags of each surface
+};
+
+layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
+{
+    material_block materials[];
+};
+
+// What faces one way in the voxel: sums, weighted by area.
+struct side {
+    float weight;
+    uint mask;
+    vec3 normal;
+    vec3 place;
+    vec3 reflectance;
+    vec3 emission;
+    float opacity;
+};
+
+vec3 signed_sum(uint word)
+{
+    return vec3(int(surfels[word]), int(surfels[word + 1u]), int(surfels[word + 2u]));
+}
+
+// Adds a surfel's share to a side; `turn` is -1 for the back of a double-sided surface.
+void add_surfel(inout side s, uint word, material_block m, bool directly, float turn)
+{
+    float weight = float(surfels[word + SURFEL_WEIGHT]);
+    float inverse = 1.0 / (255.0 * weight);
+    vec3 base = m.base_color.rgb;
+    float opacity = 1.0;
+    vec3 emission = directly ? vec3(0.0) : m.emission.rgb;
+#if VOXEL_COLORS
+    base *= signed_sum(word + SURFEL_COLOR) * inverse;
+    emission *= signed_sum(word + SURFEL_EMISSION) * inverse;
+    opacity = float(surfels[word + SURFEL_OPACITY]) * inverse;
+#endif
+    uint alpha = m.info.x & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK);
+    opacity = alpha != 0u ? clamp(opacity * m.base_color.a, 0.0, 1.0) : 1.0;
+    float transmission = m.dielectric.z * (1.0 - m.surface.x);
+    // Mean reflectance over the hemisphere: the dielectric layer's (Schlick averages to F0 + (F90 -
+    // F0) / 21), then the diffuse base or the metal below.
+    vec3 f0 = min(m.dielectric.x * m.specular_color.rgb, 1.0) * m.dielectric.y;
+    float f90 = (m.info.x & MATERIAL_IOR_ONE) != 0u ? 0.0 : m.dielectric.y;
+    vec3 layer = f0 + (vec3(f90) - f0) / 21.0;
+    layer = (m.info.x & MATERIAL_IOR_ONE) != 0u ? vec3(0.0) : layer;
+    vec3 dielectric = layer + base * (1.0 - transmission) * (1.0 - max(layer.r, max(layer.g, layer.b)));
+    vec3 reflectance = mix(dielectric, base, m.surface.x);
+    bool unlit = (m.info.x & MATERIAL_SHADING_MASK) == SHADE_UNLIT;
+    s.weight += weight;
+    s.mask |= surfels[word + SURFEL_MASK];
+    s.normal += signed_sum(word + SURFEL_NORMAL) * turn;
+    s.place += signed_sum(word + SURFEL_PLACE) / 255.0;
+    s.reflectance += weight * (unlit ? vec3(0.0) : clamp(reflectance, 0.0, 1.0));
+    s.emission += weight * (unlit ? vec3(0.0) : emission);
+    s.opacity += weight * opacity * (1.0 - transmission);
+}
+
+// Share of the voxel's cross-section along an axis that halves of it cover.
+float coverage(uint mask, uint axis)
+{
+    uint low = axis == 0u ? mask & 0x55u : axis == 1u ? mask & 0x33u : mask & 0x0fu;
+    uint high = axis == 0u ? (mask >> 1) & 0x55u : axis == 1u ? (mask >> 2) & 0x33u : mask >> 4;
+    return 0.25 * float(bitCount(low | high));
+}
+
+vec3 direct_irradiance(vec3 position, vec3 normal)
+{
+#if PUNCTUAL_LIGHTS || AREA_LIGHTS
+    surface s;
+    s.position = position;
+    s.normal = normal;
+    s.geometric_normal = normal;
+    s.view = normal;
+    s.base_color = vec3(1.0);
+    s.metallic = 0.0;
+    s.f0 = vec3(0.0);
+    s.f90 = 0.0;
+    s.roughness = 1.0;
+    s.occlusion = 1.0;
+    s.emission = vec3(0.0);
+    s.shading = SHADE_PBR;
+    return direct_light(s, uvec2(0u)) / voxels.anchor.w;
+#else
+    return vec3(0.0);
+#endif
+}
+
+void main()
+{
+    uint number = gl_GlobalInvocationID.x;
+    if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
+        return;
+    uint cell = list_words[LIST_LIT * voxels.options.x + number];
+    uint slot = cells[cell * CELL_WORDS] & CELL_SLOT_MASK;
+    uint level = cells[cell * CELL_WORDS] >> CELL_LEVEL_BIT;
+    if (level < voxels.options.y || level >= voxels.options.z)
+        return;
+    vec3 corner = vec3(slot_voxel(level, slot));
+    side sides[VOXEL_FACES];
+    for (uint i = 0u; i < VOXEL_FACES; i++) {
+        sides[i].weight = 0.0;
+        sides[i].mask = 0u;
+        sides[i].normal = vec3(0.0);
+        sides[i].place = vec3(0.0);
+        sides[i].reflectance = vec3(0.0);
+        sides[i].emission = vec3(0.0);
+        sides[i].opacity = 0.0;
+    }
+    for (uint at = cells[cell * CELL_WORDS + CELL_SURFEL]; at != VOXEL_NONE;
+         at = surfels[at * SURFEL_WORDS + SURFEL_NEXT]) {
+        uint word = at * SURFEL_WORDS;
+        uint key = surfels[word + SURFEL_KEY];
+        uint surface_word = surfaces[voxels.options.w + (key >> 3)];
+        material_block m = materials[surface_word & SURFACE_MATERIAL_MASK];
+        bool directly = (surface_word & SURFACE_LIT_DIRECTLY) != 0u;
+        add_surfel(sides[key & 7u], word, m, directly, 1.0);
+        if ((m.info.x & MATERIAL_DOUBLE_SIDED) != 0u)
+            add_surfel(sides[(key & 7u) ^ 1u], word, m, directly, -1.0);
+    }
+    vec4 faces[VOXEL_FACES];
+    for (uint i = 0u; i < VOXEL_FACES; i++)
+        faces[i] = vec4(0.0);
+    for (uint i = 0u; i < VOXEL_FACES; i++) {
+        uint words = cell_face(cell, i);
+        if (sides[i].weight == 0.0) {
+            cells[words + CELL_FACE_NORMAL] = VOXEL_NONE;
+            continue;
+        }
+        float inverse = 1.0 / sides[i].weight;
+        vec3 normal = safe_normalize(sides[i].normal, face_direction(i));
+        vec3 place = clamp(sides[i].place * inverse, 0.0, 1.0);
+        cells[words + CELL_FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));
+        uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
+        cells[words + CELL_FACE_PLACE] =
+            packed_place.x | (packed_place.y << 10) | (packed_place.z << 20);
+        vec3 position = voxels.anchor.xyz + (corner + place) * voxels.levels[level].size.x;
+        vec3 irradiance = direct_irradiance(position, normal);
+#if FEEDBACK
+        irradiance += vec3(unpackHalf2x16(cells[words + CELL_FACE_LIGHT]),
+                           unpackHalf2x16(cells[words + CELL_FACE_LIGHT + 1u]).x);
+#endif
+        vec3 light = sides[i].emission * (inverse / voxels.anchor.w) +
+                     sides[i].reflectance * inverse * irradiance;
+        float covered = coverage(sides[i].mask, i >> 1u) * sides[i].opacity * inverse;
+        float depth = min(-log(max(1.0 - covered, 1e-9)), float(VOXEL_MAX_DEPTH));
+#if VOXEL_DIRECTIONS == 1
+        faces[0] += vec4(depth * light, depth);
+#else
+        for (uint j = 0u; j < VOXEL_FACES; j++) {
+            float share = depth * max(dot(normal, face_direction(j)), 0.0);
+            faces[j] += vec4(share * light, share);
+        }
+#endif
+    }
+    ivec3 address = slot_address(level, slot);
+    for (uint j = 0u; j < voxels.counts.y; j++) {
+        float excess = max(faces[j].a / float(VOXEL_MAX_DEPTH), 1.0);
+        store_voxel_face(level, address, j, faces[j] / excess);
+    }
+}

@@ -1,0 +1,264 @@
+// Enters triangles into the voxels that they overlap. In: geometry, materials' textures, regions and
+// chunks of triangles. Out: surfels, and the index with each touched voxel's first surfel.
+//
+// LARGE 0: an invocation takes a triangle, walks the columns of voxels along its dominant axis, and
+// leaves triangles of many columns as tiles. LARGE 1: a group takes a tile, an invocation a column.
+#include "lib/geometry.glsl"
+#include "lib/voxel_surfels.glsl"
+#include "lib/voxel_overlap.glsl"
+
+#if LARGE
+layout(local_size_x = VOXEL_TILE_EDGE, local_size_y = VOXEL_TILE_EDGE) in;
+#else
+layout(local_size_x = VOXEL_CHUNK) in;
+#endif
+
+layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
+{
+    uint instance_surfaces[]; // of each instance
+};
+
+layout(std430, binding = BIND_VOXEL_TILES) buffer tile_storage
+{
+    uvec4 tiles[]; // instance, triangle, region, column a | column b << 16 (in tiles)
+};
+
+// A triangle ready to be walked. Axes a and b span the columns; c is the dominant axis.
+struct walk {
+    overlap_triangle t;
+    uint instance;
+    uvec3 words; // where each vertex starts in `vertices`
+    uint axis;   // 0: abc = yzx, 1: zxy, 2: xyz
+    uint key;
+    vec3 normal; // unit, world
+    float area;  // squares of the voxel edge
+    uint level;
+    ivec3 low; // of the region and of the triangle's box together, abc
+    ivec3 high;
+    uint spare;
+};
+
+dvec3 to_abc(dvec3 v, uint axis)
+{
+    return axis == 0u ? v.yzx : axis == 1u ? v.zxy : v;
+}
+
+ivec3 to_abc(ivec3 v, uint axis)
+{
+    return axis == 0u ? v.yzx : axis == 1u ? v.zxy : v;
+}
+
+ivec3 from_abc(ivec3 v, uint axis)
+{
+    return axis == 0u ? v.zxy : axis == 1u ? v.yzx : v;
+}
+
+vec3 from_abc(vec3 v, uint axis)
+{
+    return axis == 0u ? v.zxy : axis == 1u ? v.yzx : v;
+}
+
+uint mask_from_abc(uint mask, uint axis)
+{
+    if (axis == 2u)
+        return mask;
+    uint turned = 0u;
+    for (uint i = 0u; i < 8u; i++) {
+        uint a = i & 1u, b = (i >> 1) & 1u, c = i >> 2;
+        uint bit = axis == 0u ? c + 2u * a + 4u * b : b + 2u * c + 4u * a;
+        turned |= ((mask >> i) & 1u) << bit;
+    }
+    return turned;
+}
+
+// False for a triangle that has no area or is not finite, and for one outside the region.
+bool begin_walk(uvec4 chunk, uint triangle_number, out walk w)
+{
+    w.instance = chunk.x;
+    uint first = instances[w.instance].info.x + 3u * triangle_number;
+    w.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
+    w.level = uint(regions[chunk.w].low.w);
+    w.spare = VOXEL_NONE;
+    mat4 m = instances[w.instance].world_from_local;
+    dvec3 columns[4] = {dvec3(m[0].xyz), dvec3(m[1].xyz), dvec3(m[2].xyz), dvec3(m[3].xyz)};
+    double edge = double(voxels.levels[w.level].size.x);
+    dvec3 v[3];
+    for (int i = 0; i < 3; i++) {
+        dvec3 local = dvec3(fetch3(w.words[i]));
+        precise dvec3 world = columns[0] * local.x + columns[1] * local.y + columns[2] * local.z +
+                              columns[3];
+        v[i] = (world - dvec3(voxels.anchor.xyz)) / edge;
+    }
+    precise dvec3 normal = cross(v[1] - v[0], v[2] - v[0]);
+    vec3 n = vec3(normal);
+    float size = length(n);
+    if (!(size > 0.0) || isinf(size))
+        return false;
+    w.area = 0.5 * size;
+    w.normal = n / size;
+    if ((instances[w.instance].info.w & INSTANCE_MIRRORED) != 0u)
+        w.normal = -w.normal;
+    w.key = instance_surfaces[w.instance] * 8u + dominant_face(w.normal);
+    w.axis = dominant_face(w.normal) >> 1u;
+    for (int i = 0; i < 3; i++)
+        w.t.v[i] = to_abc(v[i], w.axis);
+    w.t.normal = to_abc(normal, w.axis);
+    w.t.low = min(min(w.t.v[0], w.t.v[1]), w.t.v[2]);
+    w.t.high = max(max(w.t.v[0], w.t.v[1]), w.t.v[2]);
+    ivec3 region_low = to_abc(regions[chunk.w].low.xyz, w.axis);
+    ivec3 region_high = region_low + to_abc(regions[chunk.w].size.xyz, w.axis) - 1;
+    // Clamped before the conversion, so that nothing overflows.
+    dvec3 least = clamp(ceil(w.t.low) - 1.0lf, dvec3(region_low), dvec3(region_high) + 1.0lf);
+    dvec3 most = clamp(floor(w.t.high), dvec3(region_low) - 1.0lf, dvec3(region_high));
+    w.low = ivec3(least);
+    w.high = ivec3(most);
+    return all(lessThanEqual(w.low, w.high));
+}
+
+#if VOXEL_COLORS
+// Textures at the level that fits the voxel, at a place on the triangle.
+void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
+{
+    material_block material = materials[instances[w.instance].info.y];
+    vec4 base = vec4(1.0);
+#if VERTEX_COLORS
+    base = fetch4(w.words.x + VERTEX_COLOR) * weights.x + fetch4(w.words.y + VERTEX_COLOR) * weights.y +
+           fetch4(w.words.z + VERTEX_COLOR) * weights.z;
+#endif
+#if TEXTURES && COLOR_CLASSES > 0
+    if ((material.info.z & COLOR_TEXTURE_SLOTS) != 0u) {
+        texture_point point;
+        point.level_dither = 0.0;
+#if SECOND_UV_SET
+        vec4 uv[3] = {fetch4(w.words.x + VERTEX_UV), fetch4(w.words.y + VERTEX_UV),
+                      fetch4(w.words.z + VERTEX_UV)};
+#else
+        vec2 uv[3] = {fetch2(w.words.x + VERTEX_UV), fetch2(w.words.y + VERTEX_UV),
+                      fetch2(w.words.z + VERTEX_UV)};
+#endif
+        vec2 e1 = vec2(w.t.v[1].xy - w.t.v[0].xy);
+        vec2 e2 = vec2(w.t.v[2].xy - w.t.v[0].xy);
+        float inverse = 1.0 / float(w.t.normal.z);
+        point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
+        point.dx = ((uv[1] - uv[0]) * e2.y - (uv[2] - uv[0]) * e1.y) * inverse;
+        point.dy = ((uv[2] - uv[0]) * e1.x - (uv[1] - uv[0]) * e2.x) * inverse;
+        for (uint slots = material.info.z & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
+            uint slot = uint(findLSB(slots));
+            vec4 texel = sample_color(material.info.y + slot, point);
+            base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
+            f.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
+        }
+    }
+#endif
+    f.color = clamp(base.rgb, 0.0, 1.0);
+    f.opacity = clamp(base.a, 0.0, 1.0);
+}
+#endif
+
+void add_voxel(inout walk w, ivec3 voxel, uint mask)
+{
+    // The middle of the columns that are touched, on the triangle's plane.
+    uint columns = (mask | (mask >> 4)) & 15u;
+    float count = float(bitCount(columns));
+    vec2 middle = vec2(0.25 + 0.5 * float(bitCount(columns & 10u)) / count,
+                       0.25 + 0.5 * float(bitCount(columns & 12u)) / count);
+    dvec2 at = dvec2(voxel.xy) + dvec2(middle);
+    dvec3 n = w.t.normal;
+    double depth = w.t.v[0].z - (n.x * (at.x - w.t.v[0].x) + n.y * (at.y - w.t.v[0].y)) / n.z;
+    depth = clamp(clamp(depth, w.t.low.z, w.t.high.z), double(voxel.z), double(voxel.z) + 1.0lf);
+    voxel_fragment f;
+    f.mask = mask_from_abc(mask, w.axis);
+    f.normal = w.normal;
+    f.place = from_abc(vec3(middle, float(depth - double(voxel.z))), w.axis);
+    f.opacity = 1.0;
+    f.color = vec3(1.0);
+    f.emission = vec3(1.0);
+    // Area in the voxel: that of the touched columns, but no more than the triangle has.
+    float slope = abs(float(n.z)) / length(vec3(n));
+    f.weight = max(1u, uint(min(w.area, 0.25 * count / slope) * float(SURFEL_WEIGHT_SCALE) + 0.5));
+#if VOXEL_COLORS
+    dvec2 e1 = w.t.v[1].xy - w.t.v[0].xy;
+    dvec2 e2 = w.t.v[2].xy - w.t.v[0].xy;
+    dvec2 d = at - w.t.v[0].xy;
+    vec2 bc = vec2(dvec2(d.x * e2.y - d.y * e2.x, e1.x * d.y - e1.y * d.x) / n.z);
+    vec3 weights = max(vec3(1.0 - bc.x - bc.y, bc), 0.0);
+    sample_surface(w, weights / (weights.x + weights.y + weights.z), f);
+#endif
+    ivec3 place = from_abc(voxel, w.axis);
+    uint word = voxels.levels[w.level].index.x + voxel_slot(w.level, place);
+    uint surfel = find_surfel(word, w.key, w.spare);
+    if (surfel != VOXEL_NONE)
+        add_fragment(surfel, f);
+}
+
+// All voxels of one column that the triangle touches.
+void walk_column(inout walk w, ivec2 column)
+{
+    dvec3 n = w.t.normal;
+    dvec2 from = dvec2(column) - w.t.v[0].xy;
+    double near = w.t.v[0].z - (n.x * from.x + n.y * from.y) / n.z;
+    dvec2 slope = -n.xy / n.z;
+    double least = near + min(slope.x, 0.0lf) + min(slope.y, 0.0lf);
+    double most = near + max(slope.x, 0.0lf) + max(slope.y, 0.0lf);
+    // A little wider, since these are rounded; the exact test decides.
+    int first = int(clamp(ceil(least - 1e-6lf) - 1.0lf, double(w.low.z), double(w.high.z) + 1.0lf));
+    int last = int(clamp(floor(most + 1e-6lf), double(w.low.z) - 1.0lf, double(w.high.z)));
+    for (int c = first; c <= last; c++) {
+        ivec3 voxel = ivec3(column, c);
+        uint mask = touched_voxel_halves(w.t, dvec3(voxel));
+        if (mask != 0u)
+            add_voxel(w, voxel, mask);
+    }
+}
+
+#if LARGE
+void main()
+{
+    uvec4 tile = tiles[gl_WorkGroupID.x];
+    walk w;
+    if (!begin_walk(uvec4(tile.x, 0u, 0u, tile.z), tile.y, w))
+        return;
+    ivec2 column = w.low.xy + ivec2(tile.w & 0xffffu, tile.w >> 16) * VOXEL_TILE_EDGE +
+                   ivec2(gl_LocalInvocationID.xy);
+    if (all(lessThanEqual(column, w.high.xy)))
+        walk_column(w, column);
+    give_back_surfel(w.spare);
+}
+#else
+// Cuts a triangle of many columns into tiles; false if there is no room for them.
+bool leave_tiles(walk w, uint triangle_number, uint region)
+{
+    uvec2 count = uvec2(w.high.xy - w.low.xy) / VOXEL_TILE_EDGE + 1u;
+    uint total = count.x * count.y;
+    uint first = atomicAdd(counters[COUNTER_TILES], total);
+    if (first + total > voxels.work.w) {
+        // Slots below the capacity must hold something harmless: the same tile does no harm.
+        for (uint i = first; i < min(first + total, voxels.work.w); i++)
+            tiles[i] = uvec4(w.instance, triangle_number, region, 0xffffffffu);
+        return false;
+    }
+    for (uint i = 0u; i < total; i++)
+        tiles[first + i] = uvec4(w.instance, triangle_number, region,
+                                 (i % count.x) | ((i / count.x) << 16));
+    return true;
+}
+
+void main()
+{
+    uvec4 chunk = chunks[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x];
+    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= voxels.work.z ||
+        gl_LocalInvocationID.x >= chunk.z)
+        return;
+    uint triangle_number = chunk.y + gl_LocalInvocationID.x;
+    walk w;
+    if (!begin_walk(chunk, triangle_number, w))
+        return;
+    ivec2 size = w.high.xy - w.low.xy + 1;
+    int count = size.x * size.y;
+    if (count > VOXEL_SMALL_COLUMNS && leave_tiles(w, triangle_number, chunk.w))
+        return;
+    for (int i = 0; i < count; i++)
+        walk_column(w, w.low.xy + ivec2(i % size.x, i / size.x));
+    give_back_surfel(w.spare);
+}
+#endif
