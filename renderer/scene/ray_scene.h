@@ -1,4 +1,5 @@
-// Ray casts against a scene's triangles by Embree: picking, and later the reference path tracer.
+// Ray casts against a scene's triangles by Embree: picking, and the reference path tracer
+// of the tests.
 #ifndef VOXCAST_RENDERER_SCENE_RAY_SCENE_H
 #define VOXCAST_RENDERER_SCENE_RAY_SCENE_H
 

@@ -25,6 +25,7 @@ static const char usage[] =
     "  --bounces N       of indirect light, default unlimited\n"
     "  --eye X,Y,Z --target X,Y,Z [--up X,Y,Z]   default: as voxcast render\n"
     "  --fov-y-deg D     vertical field of view in degrees\n"
+    "  --no-environment  leaves the environment out, as --set environment.type=none does\n"
     "  --seed N\n"
     "  --threads N       default 2\n"
     "\n"
@@ -37,7 +38,7 @@ struct options {
     const char *source, *prefix, *minus;
     const char *compared[2];
     bool compare;
-    bool has_eye, has_target;
+    bool has_eye, has_target, no_environment;
     float fov_deg;
     struct path_params path;
 };
@@ -82,6 +83,9 @@ static bool parse_option(struct options *options, int letter, const char *value)
         return sscanf(value, "%lu%c", &path->seed, &rest) == 1;
     case 'j':
         return sscanf(value, "%u%c", &path->threads, &rest) == 1 && path->threads > 0;
+    case 'x':
+        options->no_environment = true;
+        return true;
     case 'c':
         options->compare = true;
         return true;
@@ -96,19 +100,13 @@ static bool parse_option(struct options *options, int letter, const char *value)
 static bool parse_options(struct options *options, int argc, char **argv)
 {
     static const struct option names[] = {
-        {"out", required_argument, NULL, 'o'},
-        {"size", required_argument, NULL, 's'},
-        {"spp", required_argument, NULL, 'n'},
-        {"bounces", required_argument, NULL, 'b'},
-        {"eye", required_argument, NULL, 'e'},
-        {"target", required_argument, NULL, 't'},
-        {"up", required_argument, NULL, 'u'},
-        {"fov-y-deg", required_argument, NULL, 'f'},
-        {"seed", required_argument, NULL, 'r'},
-        {"compare", no_argument, NULL, 'c'},
-        {"threads", required_argument, NULL, 'j'},
-        {"minus", required_argument, NULL, 'm'},
-        {0},
+        {"out", required_argument, NULL, 'o'},      {"size", required_argument, NULL, 's'},
+        {"spp", required_argument, NULL, 'n'},      {"bounces", required_argument, NULL, 'b'},
+        {"eye", required_argument, NULL, 'e'},      {"target", required_argument, NULL, 't'},
+        {"up", required_argument, NULL, 'u'},       {"fov-y-deg", required_argument, NULL, 'f'},
+        {"seed", required_argument, NULL, 'r'},     {"compare", no_argument, NULL, 'c'},
+        {"threads", required_argument, NULL, 'j'},  {"minus", required_argument, NULL, 'm'},
+        {"no-environment", no_argument, NULL, 'x'}, {0},
     };
     int letter;
     while ((letter = getopt_long(argc, argv, "", names, NULL)) != -1)
@@ -236,6 +234,8 @@ static bool render(struct options *options)
     struct path_params *path = &options->path;
     struct view_camera chosen = path->camera;
     path->scene = scene;
+    if (options->no_environment)
+        scene->environment.type = SCENE_ENVIRONMENT_NONE;
     cli_default_camera(scene, (float)path->width / (float)path->height, &path->camera);
     if (options->has_eye) {
         chosen.fov_y_rad = path->camera.fov_y_rad;

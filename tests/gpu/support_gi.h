@@ -28,14 +28,16 @@ void gi_check_ratio(struct gi_report *report, double measured, double expected, 
 // Fails the test if anything was bad or nothing was checked.
 void gi_report_finish(const struct gi_report *report);
 
-// Draws with the same parameters until RENDER_UNCHANGED; fails the test if that takes more than
-// GI_MAX_FRAMES. The scene must have been shown by renderer_set_scene().
+// Draws with the same parameters until RENDER_UNCHANGED, at most GI_MAX_FRAMES times; beyond that
+// says so, and gi_report_finish() fails. Returns the number of frames; 0, with the reason printed,
+// if one cannot be drawn. The scene must have been shown by renderer_set_scene().
 #define GI_MAX_FRAMES 512u
 uint32_t gi_converge(struct renderer *renderer, struct view *view,
                      const struct frame_params *params, struct test_picture *out_picture);
 
-// Shows the scene, draws it in a view of its own until it has converged, and hides it again. The
-// picture is of floats for FRAME_OUTPUT_LINEAR, and of bytes as floats 0..255 for RGBA8.
+// Shows the scene, draws it in a view of its own until it has converged, and hides it again; tells
+// how long that took if it was not one frame. The picture is of floats for FRAME_OUTPUT_LINEAR, and
+// of bytes as floats 0..255 for RGBA8. Fails the test if the scene cannot be drawn.
 struct test_picture gi_draw(struct scene *scene, const struct frame_params *params);
 
 void gi_picture_finish(struct test_picture *picture);

@@ -35,6 +35,9 @@ struct scene *gi_courtyard_scene(void);
 // A closed room lit by a ball that glows, of too many triangles for a planar emitter.
 struct scene *gi_glowing_ball_scene(void);
 
+// A closed room lit by a planar lamp over a floor of brushed metal, which shows lamp and walls.
+struct scene *gi_metal_floor_scene(void);
+
 // Two closed rooms with a wall between them; a lamp in the first.
 struct gi_rooms_params {
     float wall_m;   // thickness of the wall

@@ -72,6 +72,8 @@ static void sample_slot(const struct scene *scene, const struct scene_material *
 
 struct vertex_mean {
     double normal[3];
+    double tangent[3];
+    bool reversed; // the bitangent
     double uv[2][2];
     double color[4];
 };
@@ -85,8 +87,11 @@ static void interpolate(const struct scene *scene, const struct ray_hit *hit,
     *out_mean = (struct vertex_mean){0};
     for (int corner = 0; corner < 3; corner++) {
         const struct scene_vertex *vertex = &scene->vertices[indices[corner]];
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; axis++) {
             out_mean->normal[axis] += weights[corner] * vertex->normal[axis];
+            out_mean->tangent[axis] += weights[corner] * vertex->tangent[axis];
+        }
+        out_mean->reversed = vertex->tangent[3] < 0.0f;
         for (int i = 0; i < 4; i++)
             out_mean->uv[i / 2][i % 2] += weights[corner] * vertex->uv[i / 2][i % 2];
         for (int c = 0; c < 4; c++)
@@ -94,60 +99,129 @@ static void interpolate(const struct scene *scene, const struct ray_hit *hit,
     }
 }
 
+// The dielectric layer: IOR 1 has none, 0 reflects everything (KHR_materials_ior).
+static void fill_dielectric(struct path_surface *surface, const struct scene *scene,
+                            const struct scene_material *material, const struct vertex_mean *mean)
+{
+    double weight[4], color[4];
+    sample_slot(scene, material, SCENE_TEXTURE_SPECULAR, mean->uv, weight);
+    sample_slot(scene, material, SCENE_TEXTURE_SPECULAR_COLOR, mean->uv, color);
+    double ratio = material->ior > 0.0f ? (material->ior - 1.0) / (material->ior + 1.0) : 1.0;
+    double strength = material->specular * weight[3];
+    for (int c = 0; c < 3; c++)
+        surface->f0[c] =
+            fmin(ratio * ratio * material->specular_color[c] * color[c], 1.0) * strength;
+    surface->f90 = material->ior == 1.0f ? 0.0 : strength;
+}
+
 // Coverage (alphaMode BLEND) and transmission let light pass, as the rasteriser's layers do.
+static void fill_passing(struct path_surface *surface, const struct scene *scene,
+                         const struct scene_material *material, const struct vertex_mean *mean,
+                         double alpha)
+{
+    double transmission[4];
+    sample_slot(scene, material, SCENE_TEXTURE_TRANSMISSION, mean->uv, transmission);
+    double through = material->transmission * transmission[0] * (1.0 - surface->metallic);
+    double coverage = material->alpha_mode == SCENE_ALPHA_BLEND ? alpha : 1.0;
+    surface->passed = 1.0 - coverage * (1.0 - through);
+    double untinted = surface->passed > 0.0 ? (1.0 - coverage) / surface->passed : 0.0;
+    for (int c = 0; c < 3; c++)
+        surface->passed_tint[c] = untinted + (1.0 - untinted) * surface->base_color[c];
+}
+
 static void fill_material(struct path_surface *surface, const struct scene *scene,
                           const struct vertex_mean *mean)
 {
     const struct scene_material *material = &scene->materials[surface->material];
-    double base[4], emissive[4], metallic_roughness[4], transmission[4];
+    double base[4], emissive[4], metallic_roughness[4];
     sample_slot(scene, material, SCENE_TEXTURE_BASE_COLOR, mean->uv, base);
     sample_slot(scene, material, SCENE_TEXTURE_EMISSIVE, mean->uv, emissive);
     sample_slot(scene, material, SCENE_TEXTURE_METALLIC_ROUGHNESS, mean->uv, metallic_roughness);
-    sample_slot(scene, material, SCENE_TEXTURE_TRANSMISSION, mean->uv, transmission);
     for (int c = 0; c < 4; c++)
         base[c] = fmin(fmax(base[c] * material->base_color[c] * mean->color[c], 0.0), 1.0);
-    double metallic = material->metallic * metallic_roughness[2];
-    double through = material->transmission * transmission[0] * (1.0 - metallic);
-    double coverage = material->alpha_mode == SCENE_ALPHA_BLEND ? base[3] : 1.0;
     surface->unlit = material->shading == SCENE_SHADING_UNLIT;
-    surface->passed = 1.0 - coverage * (1.0 - through);
+    surface->metallic = fmin(fmax(material->metallic * metallic_roughness[2], 0.0), 1.0);
+    surface->roughness = fmin(fmax(material->roughness * metallic_roughness[1], 0.0), 1.0);
     for (int c = 0; c < 3; c++) {
-        surface->reflectance[c] = base[c] * (1.0 - metallic);
-        surface->emission[c] =
-            surface->is_back ? 0.0
-            : surface->unlit ? base[c]
-                             : material->emissive[c] * material->emissive_strength * emissive[c];
-        double share = surface->passed > 0.0 ? (1.0 - coverage) / surface->passed : 0.0;
-        surface->passed_tint[c] = share + (1.0 - share) * base[c];
+        double glow = (double)material->emissive[c] * material->emissive_strength * emissive[c];
+        surface->base_color[c] = base[c];
+        surface->emission[c] = surface->unlit ? base[c] : glow;
+        if (surface->is_back)
+            surface->emission[c] = 0.0;
     }
+    fill_dielectric(surface, scene, material, mean);
+    fill_passing(surface, scene, material, mean, base[3]);
+}
+
+static bool normalize(double vector[3])
+{
+    double length = vector3_length(vector);
+    for (int axis = 0; axis < 3 && length > 0.0; axis++)
+        vector[axis] /= length;
+    return length > 0.0;
+}
+
+// Turns a unit normal (world, on the front) by the material's normal map.
+static void apply_normal_map(const struct scene *scene, const struct ray_hit *hit,
+                             const struct vertex_mean *mean, double normal[3])
+{
+    const struct scene_material *material = &scene->materials[hit->material];
+    if (material->textures[SCENE_TEXTURE_NORMAL].image == SCENE_NONE)
+        return;
+    const float *m = scene->nodes[hit->node].world_from_local;
+    double columns[3][3], tangent[3], bitangent[3], across[3], texel[4];
+    for (int i = 0; i < 9; i++)
+        columns[i / 3][i % 3] = m[4 * (i / 3) + i % 3];
+    for (int row = 0; row < 3; row++) {
+        tangent[row] = 0.0;
+        for (int column = 0; column < 3; column++)
+            tangent[row] += columns[column][row] * mean->tangent[column];
+    }
+    double along = vector3_dot(normal, tangent);
+    for (int axis = 0; axis < 3; axis++)
+        tangent[axis] -= along * normal[axis];
+    if (!normalize(tangent))
+        return;
+    vector3_cross(bitangent, normal, tangent);
+    vector3_cross(across, columns[0], columns[1]);
+    bool mirrored = vector3_dot(across, columns[2]) < 0.0;
+    sample_slot(scene, material, SCENE_TEXTURE_NORMAL, mean->uv, texel);
+    double x = (2.0 * texel[0] - 1.0) * material->normal_scale;
+    double y = (2.0 * texel[1] - 1.0) * material->normal_scale;
+    double turn = mean->reversed != mirrored ? -y : y, z = 2.0 * texel[2] - 1.0;
+    double mapped[3];
+    for (int axis = 0; axis < 3; axis++)
+        mapped[axis] = tangent[axis] * x + bitangent[axis] * turn + normal[axis] * z;
+    if (normalize(mapped))
+        memcpy(normal, mapped, sizeof(mapped));
 }
 
 bool path_surface_init(struct path_surface *surface, const struct scene *scene,
                        const struct ray_hit *hit, const double direction[3])
 {
-    double corners[3][3], face[3];
+    double corners[3][3], face[3], shading[3];
     path_triangle_corners(scene, hit, corners, face);
-    double length = vector3_length(face);
-    if (!(length > 0.0))
+    if (!normalize(face))
         return false;
     struct vertex_mean mean;
     interpolate(scene, hit, &mean);
+    transform_normal(scene->nodes[hit->node].world_from_local, mean.normal, shading);
+    if (!normalize(shading))
+        memcpy(shading, face, sizeof(shading));
+    apply_normal_map(scene, hit, &mean, shading);
     bool reversed = vector3_dot(face, direction) > 0.0;
     double sign = reversed ? -1.0 : 1.0;
     surface->material = hit->material;
     surface->is_back = reversed && !scene->materials[hit->material].double_sided;
     const double weights[3] = {1.0 - hit->barycentric[0] - hit->barycentric[1], hit->barycentric[0],
                                hit->barycentric[1]};
-    double shading[3];
-    transform_normal(scene->nodes[hit->node].world_from_local, mean.normal, shading);
-    double shading_length = vector3_length(shading);
     for (int axis = 0; axis < 3; axis++) {
+        surface->view[axis] = -direction[axis];
         surface->position[axis] = 0.0;
         for (int corner = 0; corner < 3; corner++)
             surface->position[axis] += weights[corner] * corners[corner][axis];
-        surface->geometric_normal[axis] = sign * face[axis] / length;
-        surface->normal[axis] = shading_length > 0.0 ? sign * shading[axis] / shading_length
-                                                     : surface->geometric_normal[axis];
+        surface->geometric_normal[axis] = sign * face[axis];
+        surface->normal[axis] = sign * shading[axis];
     }
     fill_material(surface, scene, &mean);
     return true;

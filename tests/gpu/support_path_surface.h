@@ -14,17 +14,21 @@ struct path_surface {
     bool unlit;                 // `emission` is what the camera sees; lights nothing
     double position[3];         // world
     double geometric_normal[3]; // unit, on the ray's side
-    double normal[3];           // interpolated, unit, on the same side
-    double reflectance[3];      // Lambertian
-    double emission[3];         // cd/m^2 towards the ray's origin
-    double passed;              // probability that light passes straight through, as if not there
-    double passed_tint[3];      // colour of what passes
+    double normal[3];           // of vertices and normal map, unit, turned likewise
+    double view[3];             // unit, towards the ray's origin
+    double base_color[3];
+    double metallic;
+    double roughness;
+    double f0[3];          // of the dielectric layer, at normal incidence
+    double f90;            // at grazing incidence
+    double emission[3];    // cd/m^2 towards the ray's origin
+    double passed;         // probability that light passes straight through, as if not there
+    double passed_tint[3]; // colour of what passes
 };
 
 // `direction` is the ray's. Of the hit, node, primitive, triangle, material and barycentric count.
-// False if the triangle has no area. Base colour and emission are those of factors, vertex colours
-// and textures; normal maps and specular reflection are left out: the diffuse part of a
-// dielectric is taken without what its specular layer keeps.
+// False if the triangle has no area. Values are those of factors, vertex colours and textures,
+// these at their finest level.
 bool path_surface_init(struct path_surface *surface, const struct scene *scene,
                        const struct ray_hit *hit, const double direction[3]);
 

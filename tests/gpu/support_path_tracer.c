@@ -7,6 +7,7 @@
 
 #include "renderer/camera.h"
 #include "renderer/scene/vector3.h"
+#include "support_path_brdf.h"
 #include "support_path_lights.h"
 #include "support_path_surface.h"
 
@@ -135,20 +136,12 @@ static bool is_shadowed(const struct tracer *tracer, const struct path_surface *
     return true;
 }
 
-// Lambert's BRDF times the cosine; 0 behind the surface.
-static double brdf_cosine(const struct path_surface *surface, const double direction[3])
-{
-    double cosine = vector3_dot(surface->normal, direction);
-    bool lit = cosine > 0.0 && vector3_dot(surface->geometric_normal, direction) > 0.0;
-    return lit ? cosine / M_PI : 0.0;
-}
-
-static void reflect_light(struct path *path, const struct path_surface *surface,
+static void reflect_light(struct path *path, const struct path_reflection *reflection,
                           const double light[3], double weight)
 {
     double reflected[3];
     for (int c = 0; c < 3; c++)
-        reflected[c] = surface->reflectance[c] * light[c];
+        reflected[c] = reflection->share[c] * light[c];
     add_light(path, reflected, weight, path->reflections + 1, false);
 }
 
@@ -159,13 +152,14 @@ static void sample_punctual(struct path *path, const struct path_surface *surfac
     if (!path_lights_choose_punctual(tracer->lights, surface->position, surface->normal,
                                      next_random(path), &sample))
         return;
-    double reflected = brdf_cosine(surface, sample.direction), position[3];
+    struct path_reflection reflection;
+    double position[3];
     for (int axis = 0; axis < 3; axis++)
         position[axis] = surface->position[axis] + sample.direction[axis] * sample.distance;
     const double *target = isfinite(sample.distance) ? position : NULL;
-    if (reflected > 0.0 &&
+    if (path_brdf_evaluate(surface, sample.direction, &reflection) &&
         !(sample.casts_shadow && is_shadowed(tracer, surface, target, sample.direction)))
-        reflect_light(path, surface, sample.light, reflected);
+        reflect_light(path, &reflection, sample.light, 1.0);
 }
 
 // Density per steradian of choosing, by area, the direction from `from` to a point of an emitter.
@@ -204,38 +198,28 @@ static void sample_emitter(struct path *path, const struct path_surface *surface
         direction[axis] /= distance;
     if (!path_surface_init(&emitter, tracer->params->scene, &point, direction) || emitter.is_back)
         return;
-    double reflected = brdf_cosine(surface, direction), target[3];
-    double density = emitter_density(tracer, &emitter, surface->position);
+    struct path_reflection reflection;
+    double density = emitter_density(tracer, &emitter, surface->position), target[3];
     step_off(tracer, &emitter, 1.0, target);
-    if (reflected > 0.0 && isfinite(density) && !is_shadowed(tracer, surface, target, direction)) {
-        // The balance heuristic: this density against that of the cosine-distributed ray, which is
-        // brdf_cosine itself.
-        double share = (1.0 - emitter.passed) / (density + reflected);
-        reflect_light(path, surface, emitter.emission, reflected * share);
-    }
+    // The balance heuristic: this density against that of the path's next ray.
+    if (isfinite(density) && path_brdf_evaluate(surface, direction, &reflection) &&
+        !is_shadowed(tracer, surface, target, direction))
+        reflect_light(path, &reflection, emitter.emission,
+                      (1.0 - emitter.passed) / (density + reflection.density));
 }
 
-// A cosine-distributed direction about the shading normal. False if it points into the surface, or
-// if the path ends by chance.
+// Turns the path into a random direction. False if that points into the surface, or if the path
+// ends by chance.
 static bool reflect(struct path *path, const struct path_surface *surface)
 {
-    const double *n = surface->normal;
-    // A basis without branches at the poles (Duff et al. 2017, "Building an Orthonormal Basis,
-    // Revisited").
-    double sign = copysign(1.0, n[2]);
-    double a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
-    const double x[3] = {1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]};
-    const double y[3] = {b, sign + n[1] * n[1] * a, -n[1]};
-    double u = next_random(path), radius = sqrt(u), angle = 2.0 * M_PI * next_random(path);
-    double local[3] = {radius * cos(angle), radius * sin(angle), sqrt(1.0 - u)};
-    for (int axis = 0; axis < 3; axis++)
-        path->direction[axis] = local[0] * x[axis] + local[1] * y[axis] + local[2] * n[axis];
-    path->density = brdf_cosine(surface, path->direction);
-    if (!(path->density > 0.0))
+    const double u[3] = {next_random(path), next_random(path), next_random(path)};
+    struct path_reflection reflection;
+    if (!path_brdf_sample(surface, u, path->direction, &reflection))
         return false;
+    path->density = reflection.density;
     double largest = 0.0;
     for (int c = 0; c < 3; c++) {
-        path->throughput[c] *= surface->reflectance[c];
+        path->throughput[c] *= reflection.share[c] / reflection.density;
         largest = fmax(largest, path->throughput[c]);
     }
     path->reflections++;

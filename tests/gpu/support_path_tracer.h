@@ -1,10 +1,10 @@
 // The reference: an unbiased Monte Carlo path tracer on the CPU, in double precision, that shares
 // with the renderer nothing but the scene document, the camera and the ray casts.
 //
-// Surfaces are Lambertian (see support_path_surface.h). Lights are punctual lights as points,
-// every emissive triangle, and the environment. A path's vertex samples lights directly and
-// follows one cosine-distributed ray; emitters are found both ways, weighted by the balance
-// heuristic (Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation").
+// Surfaces are Lambertian under GGX (see support_path_brdf.h). Lights are punctual lights as
+// points, every emissive triangle, and the environment. A path's vertex samples lights directly and
+// follows one ray by what the surface reflects; emitters are found both ways, weighted by the
+// balance heuristic (Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation").
 //
 // Single-sided surfaces are as the rasteriser shows them: the camera sees through their backs. All
 // other rays stop there and find black, since what casts a shadow in the renderer blocks light

@@ -48,7 +48,7 @@ struct stage {
 static void stage_draw(struct stage *stage)
 {
     struct test_picture picture = {0};
-    gi_converge(stage->renderer, stage->view, &stage->params, &picture);
+    assert_true(gi_converge(stage->renderer, stage->view, &stage->params, &picture) > 0);
     gi_picture_finish(&picture);
     renderer_view_get_statistics(stage->renderer, stage->view, &stage->statistics);
 }

@@ -45,14 +45,12 @@ static const struct furnace_case selection[] = {
     {0.5f, VOXEL_RESOLUTION_64, 1.0f, GATHER_PIXEL, 0.0f, MANY_DIVISIONS, 0},
 };
 
-// Planar emitters light their surroundings directly: a first reflection beside those counted as
-// bounces of indirect light. Walls of many triangles light by their voxels alone.
+// Walls are emitters so large that cones gather their light, be they few triangles or many: their
+// first reflection is the first bounce.
 static double furnace_series(const struct furnace_case *c)
 {
-    if (c->bounces == 0)
-        return 1.0 / (1.0 - c->albedo);
-    double reflections = c->bounces + (c->divisions == 1 ? 1.0 : 0.0);
-    return (1.0 - pow(c->albedo, reflections + 1.0)) / (1.0 - c->albedo);
+    double series = 1.0 / (1.0 - c->albedo);
+    return c->bounces == 0 ? series : series * (1.0 - pow(c->albedo, c->bounces + 1.0));
 }
 
 static void check_furnace(struct gi_report *report, enum gi_method method,
@@ -78,7 +76,7 @@ static void check_furnace(struct gi_report *report, enum gi_method method,
     snprintf(name, sizeof(name), "%s %s step %g %s albedo %g turn %g %s bounces %u",
              gi_method_names[method], voxel_resolution_names[c->resolution], (double)c->cone_step,
              gather_mode_names[c->gather_mode], (double)c->albedo, (double)c->turn_rad,
-             c->divisions == 1 ? "planar" : "voxels", c->bounces);
+             c->divisions == 1 ? "quads" : "many", c->bounces);
     gi_check_ratio(report, mean[0], expected, MEAN_TOLERANCE, "%s", name);
     gi_check(report, low >= 1.0 - PIXEL_TOLERANCE && high <= 1.0 + PIXEL_TOLERANCE,
              "%s: pixels from %.4f to %.4f of what is expected (within %g)", name, low, high,

@@ -82,7 +82,7 @@ static void check_rest(struct gi_report *report, struct renderer *renderer, stru
     struct error error;
     struct test_picture walked = {0};
     params.output = FRAME_OUTPUT_RGBA8;
-    gi_converge(renderer, view, &params, &walked);
+    assert_true(gi_converge(renderer, view, &params, &walked) > 0);
     renderer_set_scene(renderer, NULL, &error);
     struct test_picture fresh = gi_draw(scene, &params);
     const char *method = gi_method_names[params.settings.gi_method];

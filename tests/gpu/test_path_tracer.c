@@ -233,38 +233,200 @@ static void test_sky_lights_an_open_floor(void **state)
     gi_report_finish(&report);
 }
 
+// Under a sky of luminance 1 a white metal shows the directional albedo of its lobe: values by
+// numerical integration of the formulas of glTF 2.0, appendix B, seen head on.
+static void test_metal_under_a_sky_shows_its_albedo(void **state)
+{
+    (void)state;
+    static const double albedos[][2] = {{0.0, 1.0},   {0.2, 0.998}, {0.4, 0.968},
+                                        {0.6, 0.825}, {0.8, 0.555}, {1.0, 0.307}};
+    struct gi_report report = {0};
+    for (size_t i = 0; i < sizeof(albedos) / sizeof(albedos[0]); i++) {
+        struct scene *scene = test_square_scene(1.0f, 1.0f);
+        scene->materials[0].metallic = 1.0f;
+        scene->materials[0].roughness = (float)albedos[i][0];
+        scene->environment = (struct scene_environment){
+            .type = SCENE_ENVIRONMENT_CONSTANT, .intensity = 1.0f, .color = {1.0f, 1.0f, 1.0f}};
+        struct path_params params = path_params(scene, 64);
+        gi_check_ratio(&report, trace_mean(&params, SKY), albedos[i][1], 0.005,
+                       "white metal of roughness %g under a sky", albedos[i][0]);
+        scene_destroy(&scene);
+    }
+    gi_report_finish(&report);
+}
+
+// Walls that glow light gloss as a sky that glows as much: found by sampling emitters as well as by
+// following reflections, or by these alone.
+static void test_gloss_in_a_glowing_box(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    static const float roughnesses[] = {0.05f, 0.3f, 0.9f};
+    for (int i = 0; i < 6; i++) {
+        double means[2];
+        for (int sky = 0; sky < 2; sky++) {
+            // Black walls that glow, or nothing but a sky that glows as much.
+            struct scene *scene = sky ? scene_create("sky")
+                                      : gi_box_scene(&(struct gi_box_params){
+                                            .emission = 1.0f, .half_edge_m = 2.0f, .divisions = 1});
+            scene->environment = (struct scene_environment){
+                .type = SCENE_ENVIRONMENT_CONSTANT, .intensity = 1.0f, .color = {1.0f, 1.0f, 1.0f}};
+            struct scene_material gloss;
+            scene_material_init(&gloss, "gloss");
+            gloss.base_color[0] = 0.6f;
+            gloss.metallic = i < 3 ? 0.0f : 1.0f;
+            gloss.roughness = roughnesses[i % 3];
+            uint32_t material = scene_add_material(scene, &gloss);
+            uint32_t mesh = scene_add_mesh(scene, "gloss");
+            const float corners[4][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+            assert_true(builtin_add_quad(scene, corners, material));
+            builtin_add_mesh_node(scene, "gloss", mesh);
+            scene_update_world_transforms(scene);
+            struct path_params params = path_params(scene, 256);
+            params.camera.eye[0] = 1.1f;
+            params.camera.eye[2] = 0.9f;
+            means[sky] = trace_mean(&params, sky ? SKY : DIRECT);
+            scene_destroy(&scene);
+        }
+        gi_check_ratio(&report, means[0], means[1], 0.01, "gloss, roughness %g, metallic %d",
+                       (double)roughnesses[i % 3], i / 3);
+    }
+    gi_report_finish(&report);
+}
+
+// GGX of glTF 2.0, appendix B, for a white metal whose normal is +Z: BRDF times the cosine.
+static double metal_share(const double view[3], const double light[3], double alpha)
+{
+    double half[3], length = 0.0, a2 = alpha * alpha;
+    for (int i = 0; i < 3; i++) {
+        half[i] = view[i] + light[i];
+        length += half[i] * half[i];
+    }
+    double n_h = half[2] / sqrt(length), n_l = light[2], n_v = view[2];
+    double distribution = a2 / (M_PI * pow(n_h * n_h * (a2 - 1.0) + 1.0, 2.0));
+    double visibility =
+        0.5 / (n_l * sqrt(n_v * n_v * (1.0 - a2) + a2) + n_v * sqrt(n_l * n_l * (1.0 - a2) + a2));
+    return distribution * visibility * n_l;
+}
+
+#define LAMP_HEIGHT_M    2.0
+#define LAMP_HALF_EDGE_M 0.3
+#define LAMP_RADIANCE    8.0
+
+// What the origin shows of a square lamp above a white metal floor: the sum over the lamp's area.
+static double metal_under_lamp(const float eye[3], double lamp_x, double roughness)
+{
+    const int steps = 400;
+    double view[3], length = 0.0, sum = 0.0, step = 2.0 * LAMP_HALF_EDGE_M / steps;
+    for (int i = 0; i < 3; i++)
+        length += (double)eye[i] * eye[i];
+    for (int i = 0; i < 3; i++)
+        view[i] = eye[i] / sqrt(length);
+    for (int i = 0; i < steps * steps; i++) {
+        double point[3] = {lamp_x - LAMP_HALF_EDGE_M + (i % steps + 0.5) * step,
+                           -LAMP_HALF_EDGE_M + (i / steps + 0.5) * step, LAMP_HEIGHT_M};
+        double squared = point[0] * point[0] + point[1] * point[1] + point[2] * point[2];
+        double distance = sqrt(squared), light[3];
+        for (int axis = 0; axis < 3; axis++)
+            light[axis] = point[axis] / distance;
+        sum += metal_share(view, light, roughness * roughness) * light[2] / squared * step * step;
+    }
+    return LAMP_RADIANCE * sum;
+}
+
+static struct scene *metal_under_lamp_scene(double lamp_x, double roughness)
+{
+    struct scene *scene = test_square_scene(0.05f, 1.0f);
+    scene->materials[0].metallic = 1.0f;
+    scene->materials[0].roughness = (float)roughness;
+    uint32_t lamp = builtin_add_matte(scene, "lamp", (const float[3]){0.0f, 0.0f, 0.0f});
+    scene->materials[lamp].emissive[0] = 1.0f;
+    scene->materials[lamp].emissive_strength = (float)LAMP_RADIANCE;
+    uint32_t mesh = scene_add_mesh(scene, "lamp");
+    float left = (float)(lamp_x - LAMP_HALF_EDGE_M), right = (float)(lamp_x + LAMP_HALF_EDGE_M);
+    const float edge = (float)LAMP_HALF_EDGE_M, height = (float)LAMP_HEIGHT_M;
+    const float corners[4][3] = {
+        {left, -edge, height}, {left, edge, height}, {right, edge, height}, {right, -edge, height}};
+    assert_true(builtin_add_quad(scene, corners, lamp));
+    builtin_add_mesh_node(scene, "lamp", mesh);
+    scene_update_world_transforms(scene);
+    return scene;
+}
+
+// The renderer takes a lamp's gloss from one point of it: its figure is told, not judged.
+static void test_gloss_of_a_lamp_is_its_integral(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    static const double roughnesses[] = {0.2, 0.4, 0.7};
+    static const double offsets_m[] = {0.0, 0.8}; // of the lamp from where the mirror would show it
+    for (int i = 0; i < 6; i++) {
+        double roughness = roughnesses[i % 3];
+        const float eye[3] = {1.2f, 0.0f, 1.5f};
+        double lamp_x = -1.2 / 1.5 * LAMP_HEIGHT_M + offsets_m[i / 3];
+        struct scene *scene = metal_under_lamp_scene(lamp_x, roughness);
+        struct path_params params = path_params(scene, 128);
+        for (int axis = 0; axis < 3; axis++)
+            params.camera.eye[axis] = eye[axis];
+        params.camera.fov_y_rad = 0.001f;
+        double expected = metal_under_lamp(eye, lamp_x, roughness);
+        gi_check_ratio(&report, trace_mean(&params, DIRECT), expected, 0.01,
+                       "metal of roughness %g, lamp %g m beside the mirror ray", roughness,
+                       offsets_m[i / 3]);
+        struct frame_params frame = gi_params(33, 33, GI_METHOD_NONE);
+        frame.camera = params.camera;
+        struct test_picture shown = gi_draw(scene, &frame);
+        print_message("      the renderer shows %.4f of that\n",
+                      (double)test_center(&shown) / expected);
+        gi_picture_finish(&shown);
+        scene_destroy(&scene);
+    }
+    gi_report_finish(&report);
+}
+
+static struct scene *load_builtin_without_sky(const char *name)
+{
+    struct error error = {""};
+    struct scene *scene = scene_create_builtin(name, &error);
+    assert_non_null(scene);
+    scene->environment.type = SCENE_ENVIRONMENT_NONE;
+    return scene;
+}
+
 // Means over the picture: the renderer takes an emitter's shadow from its centre, which moves
 // light, but on the whole neither adds nor loses much. Both look along the same rays: a lamp is
 // much brighter than what it lights, and few pixels wide.
+static void check_direct_light(struct gi_report *report, struct scene *scene, double tolerance)
+{
+    struct frame_params frame = gi_params(96, 96, GI_METHOD_NONE);
+    frame.quality = QUALITY_FINAL;
+    gi_scene_camera(scene, &frame.camera);
+    struct test_picture shown = gi_draw(scene, &frame);
+    struct path_params params = path_params(scene, 16);
+    params.camera = frame.camera;
+    params.width = params.height = 2 * 96; // final quality averages four pixels
+    params.bounces = 0;
+    params.pixel_center = true;
+    struct path_picture traced;
+    assert_true(path_trace(&params, &traced));
+    double measured[3], expected[3];
+    gi_mean(shown.pixels, 96, 96, measured);
+    gi_mean(traced.direct, traced.width, traced.height, expected);
+    for (int c = 0; c < 3; c++)
+        gi_check_ratio(report, measured[c], expected[c], tolerance, "%s, direct light, channel %d",
+                       scene->name, c);
+    path_picture_finish(&traced);
+    gi_picture_finish(&shown);
+    scene_destroy(&scene);
+}
+
 static void test_renderer_shows_the_same_direct_light(void **state)
 {
     (void)state;
     struct gi_report report = {0};
-    struct error error = {""};
-    struct scene *scenes[2] = {scene_create_builtin("cornell", &error), gi_corridor_scene()};
-    static const char *const names[2] = {"cornell", "corridor"};
-    for (int i = 0; i < 2; i++) {
-        assert_non_null(scenes[i]);
-        struct frame_params frame = gi_params(96, 96, GI_METHOD_NONE);
-        frame.quality = QUALITY_FINAL;
-        gi_scene_camera(scenes[i], &frame.camera);
-        struct test_picture shown = gi_draw(scenes[i], &frame);
-        struct path_params params = path_params(scenes[i], 16);
-        params.camera = frame.camera;
-        params.width = params.height = 2 * 96; // final quality averages four pixels
-        params.pixel_center = true;
-        struct path_picture traced;
-        assert_true(path_trace(&params, &traced));
-        double measured[3], expected[3];
-        gi_mean(shown.pixels, 96, 96, measured);
-        gi_mean(traced.direct, traced.width, traced.height, expected);
-        for (int c = 0; c < 3; c++)
-            gi_check_ratio(&report, measured[c], expected[c], 0.02, "%s, direct light, channel %d",
-                           names[i], c);
-        path_picture_finish(&traced);
-        gi_picture_finish(&shown);
-        scene_destroy(&scenes[i]);
-    }
+    check_direct_light(&report, load_builtin_without_sky("cornell"), 0.02);
+    check_direct_light(&report, gi_corridor_scene(), 0.02);
+    check_direct_light(&report, load_builtin_without_sky("material-grid"), 0.02);
     gi_report_finish(&report);
 }
 
@@ -291,6 +453,9 @@ int main(void)
         cmocka_unit_test(test_furnace_is_a_geometric_series),
         cmocka_unit_test(test_lamp_in_a_box_balances),
         cmocka_unit_test(test_sky_lights_an_open_floor),
+        cmocka_unit_test(test_metal_under_a_sky_shows_its_albedo),
+        cmocka_unit_test(test_gloss_in_a_glowing_box),
+        cmocka_unit_test(test_gloss_of_a_lamp_is_its_integral),
         cmocka_unit_test(test_renderer_shows_the_same_direct_light),
         cmocka_unit_test(test_seed_alone_decides),
     };
