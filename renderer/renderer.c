@@ -208,7 +208,8 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     if (!gi_begin_frame(&renderer->gi, frame, out_error))
         return false;
     gi_release_unused(&renderer->gi, renderer->views, renderer->view_count);
-    if (!view_prepare(view, frame->resident, frame->params, frame->plan.bits))
+    if (!view_prepare(view, frame->resident, frame->params, frame->plan.bits,
+                      frame->volume ? gi_gather_mode(frame) : GATHER_CACHE))
         return error_set(out_error, "a view of %u x %u pixels does not fit into GPU memory",
                          frame->params->width, frame->params->height);
     frame->width = view->width;
@@ -244,14 +245,17 @@ static bool params_are_valid(const struct frame_params *params, struct error *ou
     return isfinite(camera->fov_y_rad) || error_set(out_error, "the field of view is not finite");
 }
 
-// How far the newest drawn picture has come.
-static float view_convergence(const struct renderer *renderer, const struct view *view)
+// How far the frame that has just been drawn has come: the light in voxels, then the pictures with
+// turned cones that were averaged.
+static float view_convergence(const struct frame *frame)
 {
-    const struct voxel_volume *volume = gi_find(&renderer->gi, view->volume_serial);
-    if (!volume)
+    if (!frame->volume)
         return 1.0f;
-    float light = voxel_light_convergence(volume);
-    return light;
+    float light = voxel_light_convergence(frame->volume);
+    if (light < 1.0f || frame->still_frames <= 1)
+        return light < 1.0f ? 0.9f * light : 1.0f;
+    float averaged = (float)frame->still_count / (float)frame->still_frames;
+    return fminf(0.9f + 0.1f * averaged, 1.0f);
 }
 
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
@@ -271,7 +275,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     bool same_scene = view->drawn && view->last_scene == renderer->scene_number;
     bool same = same_scene && params_equal(&view->last_params, params) &&
                 memcmp(&view->last_revisions, &revisions, sizeof(revisions)) == 0;
-    if (same && view_convergence(renderer, view) >= 1.0f)
+    if (same && view->last_convergence >= 1.0f)
         return RENDER_UNCHANGED;
     if (!resident_update(resident, out_error))
         return RENDER_FAILED;
@@ -285,6 +289,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .visibility_changed = !same_scene || !same_surfaces(view, params, &revisions),
     };
     effects_plan(&frame.plan, resident, params);
+    view->last_plan = frame.plan; // reasons for skipping passes may point there
     if (!draw_frame(renderer, &frame, out_error)) {
         view->drawn = false;
         return RENDER_FAILED;
@@ -300,8 +305,9 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .width = params->width,
         .height = params->height,
         .output = params->output,
-        .convergence = view_convergence(renderer, view),
+        .convergence = view_convergence(&frame),
     };
+    view->last_convergence = slot->result.convergence;
     slot->volume_serial = view->volume_serial;
     slot->generation = frame.volume && frame.light_work.trace ? frame.volume->light.generation : 0;
     view->ring_next = (view->ring_next + 1) % RENDERER_FRAMES_IN_RING;
@@ -310,7 +316,6 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     view->last_params = *params;
     view->last_revisions = revisions;
     view->last_scene = renderer->scene_number;
-    view->last_plan = frame.plan;
     return RENDER_DRAWN;
 }
 

@@ -32,6 +32,8 @@ static void destroy_sized_targets(struct view *view)
     gpu_buffer_destroy(&view->light_masks);
     gpu_buffer_destroy(&view->fragments);
     gpu_buffer_destroy(&view->transparent_tiles);
+    gpu_buffer_destroy(&view->gathered);
+    gpu_buffer_destroy(&view->glossy_tiles);
     view->width = 0;
     view->height = 0;
 }
@@ -126,8 +128,30 @@ static bool prepare_cascades(struct view *view, struct shadow_map *map, uint32_t
     return true;
 }
 
+// What indirect light needs beside the volume.
+static bool prepare_indirect(struct view *view, enum gather_mode gather, uint32_t effect_bits)
+{
+    bool done = true;
+    uint32_t step = gather == GATHER_HALF ? 2 : 1;
+    size_t gathered =
+        (size_t)((view->width + step - 1) / step) * ((view->height + step - 1) / step);
+    if (gather == GATHER_AUTO || gather == GATHER_CACHE)
+        gpu_buffer_destroy(&view->gathered);
+    else
+        done = gpu_buffer_ensure(view->gpu, &view->gathered, "view.gathered", GPU_BUFFER_STATIC,
+                                 gathered * sizeof(vec4));
+    size_t tiles = (size_t)((view->width + GROUP_EDGE - 1) / GROUP_EDGE) *
+                   ((view->height + GROUP_EDGE - 1) / GROUP_EDGE);
+    if (effect_bits & EFFECT_BIT(EFFECT_INDIRECT_SPECULAR))
+        done = done && gpu_buffer_ensure(view->gpu, &view->glossy_tiles, "view.glossy_tiles",
+                                         GPU_BUFFER_STATIC, 16 + 4 * tiles);
+    else
+        gpu_buffer_destroy(&view->glossy_tiles);
+    return done;
+}
+
 bool view_prepare(struct view *view, const struct resident *resident,
-                  const struct frame_params *params, uint32_t effect_bits)
+                  const struct frame_params *params, uint32_t effect_bits, enum gather_mode gather)
 {
     const struct quality_level *quality = &quality_levels[params->quality];
     float scale = quality->resolution_scale;
@@ -175,6 +199,7 @@ bool view_prepare(struct view *view, const struct resident *resident,
         gpu_buffer_destroy(&view->fragments);
         gpu_buffer_destroy(&view->transparent_tiles);
     }
+    done = done && prepare_indirect(view, gather, effect_bits);
     bool cascades =
         (effect_bits & EFFECT_BIT(EFFECT_SHADOWS)) && resident->directional_light != NO_SHADOW;
     return done &&
@@ -193,6 +218,7 @@ void view_bind(const struct view *view)
     gpu_bind_storage(gpu, BIND_EXPOSURE, view->exposure);
     gpu_bind_storage(gpu, BIND_FRAGMENTS, view->fragments);
     gpu_bind_storage(gpu, BIND_TILES, view->transparent_tiles);
+    gpu_bind_storage(gpu, BIND_INDIRECT, view->gathered);
     gpu_bind_texture(gpu, UNIT_IDS, view->ids);
     gpu_bind_texture(gpu, UNIT_DEPTH, view->depth);
 }

@@ -64,6 +64,12 @@ struct view {
 
     uint64_t volume_serial; // of the volume that the newest frame was drawn with; 0 for none
 
+    struct gpu_buffer *gathered; // irradiance that pixels have gathered, summed over still frames
+    uint32_t still_count;        // pictures in that sum
+    uint64_t gathered_key;       // of the light and the cones that they saw
+    struct gpu_buffer
+        *glossy_tiles; // arguments and numbers of tiles that reflections are traced in
+
     // What the newest drawn frame was made from.
     bool drawn;
     struct frame_params last_params;
@@ -73,14 +79,16 @@ struct view {
     const char *pass_skip_reasons[RENDERER_MAX_PASSES];
     double last_frame_ms;
     float last_exposure;
+    float last_convergence;
 };
 
 struct view *view_create(struct gpu *gpu);
 void view_destroy(struct view **view);
 
-// Makes the targets fit the sizes and effects. False when GPU memory ends.
+// Makes the targets fit the sizes and effects; `gather` is GATHER_CACHE where pixels have no cones.
+// False when GPU memory ends.
 bool view_prepare(struct view *view, const struct resident *resident,
-                  const struct frame_params *params, uint32_t effect_bits);
+                  const struct frame_params *params, uint32_t effect_bits, enum gather_mode gather);
 
 // Bytes of one output picture, and where its planes lie.
 size_t view_output_layout(const struct frame_params *params, size_t out_offsets[3],

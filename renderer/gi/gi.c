@@ -201,8 +201,8 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     struct voxel_block *block = &volume->uniforms;
     bool automatic = settings->cone_set == CONE_SET_AUTO;
     bool own_step = settings->cone_step > 0.0f;
-    fill_march(volume, cache_cones_of(settings),
-               own_step ? settings->cone_step : CACHE_STEP, block->march, block->cones);
+    fill_march(volume, cache_cones_of(settings), own_step ? settings->cone_step : CACHE_STEP,
+               block->march, block->cones);
     fill_march(volume, automatic ? frame->quality->cone_set : settings->cone_set,
                own_step ? settings->cone_step : frame->quality->cone_step, block->pixel_march,
                block->pixel_cones);
@@ -210,17 +210,48 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     block->light[1] = settings->indirect_intensity;
 }
 
-static enum gather_mode gather_mode_of(const struct frame *frame)
+enum gather_mode gi_gather_mode(const struct frame *frame)
 {
     enum gather_mode chosen = frame->params->settings.gather_mode;
     return chosen == GATHER_AUTO ? frame->quality->gather_mode : chosen;
+}
+
+// Pixels gather once the light has settled; until then they show the cache. While nothing moves
+// their pictures are averaged.
+static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
+{
+    struct view *view = frame->view;
+    struct voxel_block *block = &volume->uniforms;
+    block->light[2] = frame->quality->specular_roughness;
+    frame->still_frames = 1;
+    frame->still_count = 1;
+    if (frame->gather == GATHER_CACHE)
+        return;
+    frame->still_frames = frame->quality->still_frames > 0 ? frame->quality->still_frames : 1;
+    if (!volume->light.converged) {
+        frame->gather = GATHER_CACHE;
+        frame->still_count = 0;
+        view->still_count = 0;
+        return;
+    }
+    uint64_t key =
+        hash_bytes(volume->light.version, &block->pixel_march, sizeof(block->pixel_march));
+    key = hash_bytes(key, &view->volume_serial, sizeof(view->volume_serial));
+    key = hash_bytes(key, &frame->gather, sizeof(frame->gather));
+    if (frame->visibility_changed || frame->light_work.voxelize || key != view->gathered_key)
+        view->still_count = 0;
+    view->gathered_key = key;
+    frame->gather_now = view->still_count < frame->still_frames;
+    view->still_count += frame->gather_now;
+    frame->still_count = view->still_count;
+    block->settle[1] = (float)view->still_count;
 }
 
 bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 {
     frame->volume = NULL;
     frame->view->volume_serial = 0;
-    frame->gather = gather_mode_of(frame);
+    frame->gather = gi_gather_mode(frame);
     if (!(frame->plan.bits & VOXEL_EFFECTS))
         return true;
     const struct render_settings *settings = &frame->params->settings;
@@ -239,11 +270,12 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         .key = light_key(frame, volume),
         .bounces = settings->bounces,
         .feedback = frame_has(frame, EFFECT_BOUNCE),
-        .cache_shown = frame->gather == GATHER_CACHE,
+        .cache_shown = gi_gather_mode(frame) == GATHER_CACHE,
         .camera_moved = frame->visibility_changed,
         .software = gpu_get_info(gi->gpu)->software,
         .levels_per_frame = settings->levels_per_frame,
     };
     voxel_light_begin(volume, &light, &frame->light_work);
+    plan_gathering(frame, volume);
     return true;
 }

@@ -10,8 +10,9 @@
 #define MIN_BUDGET      256.0
 #define MAX_BUDGET      1e6
 #define GPU_BUDGET      131072u
-// Light has settled when no voxel face changes by more than this share of the brightest one.
-#define SETTLED_CHANGE  0.002f
+// Light has settled when no voxel face changes by more than this share of its light in a
+// generation.
+#define SETTLED_CHANGE  0.02f
 #define MAX_GENERATIONS 48u
 // Pixels ask for faces in a pattern of so many frames: the cache is complete when nothing was asked
 // for in all of them.
@@ -111,6 +112,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     volume->uniforms.cache[1] = volume->frame;
     volume->uniforms.cache[2] = (uint32_t)entry_budget(volume, params);
     volume->uniforms.cache[3] = params->feedback;
+    volume->uniforms.settle[0] = light->peak;
     light->feeds = feeds;
 }
 
@@ -131,7 +133,8 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     float change, peak;
     memcpy(&change, &report->change_bits, sizeof(change));
     memcpy(&peak, &report->peak_bits, sizeof(peak));
-    light->change = peak > 0.0f ? change / peak : 0.0f;
+    light->change = change;
+    light->peak = peak;
     light->bounce++;
     light->converged =
         light->bounce >= light->needed || (light->unlimited && light->change < SETTLED_CHANGE);

@@ -9,7 +9,7 @@
 struct voxel_light_work {
     bool voxelize;
     bool relight;
-    bool direct; // by lamps, too, rather than by the cache alone
+    bool direct;            // by lamps, too, rather than by the cache alone
     uint32_t relight_first; // levels
     uint32_t relight_end;
     bool trace;

@@ -6,6 +6,8 @@ static const char *direct_light_skip_reason(const struct frame *frame)
 {
     if (!frame_has(frame, EFFECT_PUNCTUAL_LIGHTS) && !frame_has(frame, EFFECT_AREA_LIGHTS))
         return "no light in the scene";
+    if (frame->resident->counts.lit_materials == 0 && !frame->params->settings.force_all_effects)
+        return "every surface is unlit";
     return frame_shows_light(frame) ? NULL : "the debug view shows no light";
 }
 
@@ -17,7 +19,8 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
                         : first                                        ? "FIRST 1\n"
                                                                        : "FIRST 0\n";
     const struct gpu_program *program =
-        pass_program(frame, pass, "light/direct_light.comp", extra, out_error);
+        frame->volume ? voxel_program(frame, pass, "light/direct_light.comp", extra, out_error)
+                      : pass_program(frame, pass, "light/direct_light.comp", extra, out_error);
     if (!program)
         return false;
     pass_dispatch_pixels(frame, program);

@@ -6,18 +6,38 @@
 static const char *indirect_diffuse_skip_reason(const struct frame *frame)
 {
     if (!frame->volume || !frame_has(frame, EFFECT_INDIRECT_DIFFUSE))
-        return frame->plan.reasons[EFFECT_INDIRECT_DIFFUSE];
+        return frame->view->last_plan.reasons[EFFECT_INDIRECT_DIFFUSE];
     return frame->params->debug_view == DEBUG_VIEW_FINAL ? NULL : "the debug view shows none";
+}
+
+static bool gather_at_pixels(const struct frame *frame, const struct pass *pass, const char *extra,
+                             struct error *out_error)
+{
+    const struct gpu_program *program =
+        voxel_program(frame, pass, "gi/pixel_gather.comp", extra, out_error);
+    if (!program)
+        return false;
+    uint32_t pixels = frame->gather == GATHER_HALF ? 2 * GROUP_EDGE : GROUP_EDGE;
+    gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
+                 (frame->height + pixels - 1) / pixels, 1);
+    gpu_barrier(frame->gpu);
+    return true;
 }
 
 static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
                                  struct error *out_error)
 {
+    bool cached = frame->gather == GATHER_CACHE;
+    const char *extra = cached                         ? "GATHER 0\n"
+                        : frame->gather == GATHER_HALF ? "GATHER 2\n"
+                                                       : "GATHER 1\n";
+    if (!cached && frame->gather_now && !gather_at_pixels(frame, pass, extra, out_error))
+        return false;
     const struct gpu_program *program =
-        voxel_program(frame, pass, "gi/indirect_diffuse.comp", "", out_error);
+        voxel_program(frame, pass, "gi/indirect_diffuse.comp", extra, out_error);
     if (!program)
         return false;
-    uint32_t pixels = 2 * GROUP_EDGE;
+    uint32_t pixels = cached ? 2 * GROUP_EDGE : GROUP_EDGE;
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
                  (frame->height + pixels - 1) / pixels, 1);
     return true;
@@ -26,7 +46,8 @@ static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
 const struct pass indirect_diffuse_pass = {
     .name = "indirect_diffuse",
     .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
-                    EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION),
+                    EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) |
+                    EFFECT_BIT(EFFECT_INDIRECT_SPECULAR),
     .use_count = 5,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

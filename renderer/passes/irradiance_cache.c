@@ -25,14 +25,13 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
         request ? voxel_program(frame, pass, "gi/cache_select.comp", "STAGE 0\n", out_error) : NULL;
     const struct gpu_program *arguments =
         select ? voxel_program(frame, pass, "gi/cache_select.comp", "STAGE 1\n", out_error) : NULL;
-    const struct gpu_program *gather =
-        arguments ? voxel_program(frame, pass, "gi/cache_trace.comp", "PIXEL_CONES 0\nMARCH 0\n",
-                                  out_error)
-                  : NULL;
-    const struct gpu_program *march =
-        gather ? voxel_program(frame, pass, "gi/cache_trace.comp", "PIXEL_CONES 0\nMARCH 1\n",
-                               out_error)
-               : NULL;
+    const struct gpu_program *gather = arguments
+                                           ? voxel_program(frame, pass, "gi/cache_trace.comp",
+                                                           "PIXEL_CONES 0\nMARCH 0\n", out_error)
+                                           : NULL;
+    const struct gpu_program *march = gather ? voxel_program(frame, pass, "gi/cache_trace.comp",
+                                                             "PIXEL_CONES 0\nMARCH 1\n", out_error)
+                                             : NULL;
     if (!march)
         return false;
     gpu_buffer_fill(volume->counters, COUNTER_CACHE_CLASSES * 4, CACHE_CLASSES * 4, 0);

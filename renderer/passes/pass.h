@@ -52,6 +52,9 @@ struct frame {
     struct voxel_volume *volume; // NULL where no effect needs voxels
     struct voxel_light_work light_work;
     enum gather_mode gather;
+    bool gather_now;       // pixels' cones are due; else what they found is still good
+    uint32_t still_frames; // pictures to average
+    uint32_t still_count;  // this one and those before it
 };
 
 static inline bool frame_has(const struct frame *frame, enum effect effect)

@@ -105,6 +105,7 @@ void resident_count_materials(struct resident *resident)
     counts->transparent_materials = 0;
     counts->blinn_phong_materials = 0;
     counts->specular_materials = 0;
+    counts->lit_materials = 0;
     counts->emissive_materials = 0;
     counts->reflective_materials = 0;
     counts->transmissive_materials = 0;
@@ -134,6 +135,7 @@ void resident_count_materials(struct resident *resident)
         bool lit = material->shading != SCENE_SHADING_UNLIT;
         bool colored = material->base_color[0] > 0.0f || material->base_color[1] > 0.0f ||
                        material->base_color[2] > 0.0f;
+        counts->lit_materials += lit;
         counts->reflective_materials += lit && (colored || dielectric);
         counts->emissive_materials += lit && material_is_emissive(material);
         counts->transmissive_materials += lit && material->transmission > 0.0f;

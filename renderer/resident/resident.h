@@ -61,6 +61,7 @@ struct resident_counts {
     uint32_t transparent_materials;
     uint32_t blinn_phong_materials;
     uint32_t specular_materials;
+    uint32_t lit_materials; // that are not unlit
     uint32_t emissive_materials;
     uint32_t reflective_materials; // that pass light on at all
     uint32_t transmissive_materials;

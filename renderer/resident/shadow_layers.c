@@ -72,6 +72,15 @@ static bool resize(struct shadow_map *map, uint32_t lamps, uint32_t cascades)
 bool shadow_map_reserve_lamps(struct shadow_map *map, uint32_t layers)
 {
     assert(layers <= MAX_SHADOW_LAYERS);
+    bool cascades = false;
+    for (uint32_t i = 0; i < MAX_VIEW_CASCADES; i++)
+        cascades = cascades || map->cascade_taken[i];
+    if (layers == 0 && !cascades && map->texture) {
+        destroy_texture(map);
+        map->lamps = 0;
+        map->cascades = 0;
+        map->epoch++;
+    }
     return layers <= map->lamps || resize(map, layers, map->cascades);
 }
 

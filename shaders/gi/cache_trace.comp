@@ -84,7 +84,9 @@ void main()
     faces[words + FACE_STATE] = voxels.cache.x |
                                 (relative_change(before, light) << FACE_CHANGE_BIT) | FACE_VALID |
                                 FACE_MARCHED | (epoch << FACE_EPOCH_BIT);
-    // Against the brightest light: dark corners must not keep the whole from being done.
-    atomicMax(counters[COUNTER_CACHE_CHANGE], floatBitsToUint(luminance(abs(light - before))));
+    // What is darker than a hundredth of the brightest must not keep the whole from being done.
+    float change = luminance(abs(light - before)) /
+                   max(luminance(light) + 0.01 * voxels.settle.x, 1e-9);
+    atomicMax(counters[COUNTER_CACHE_CHANGE], floatBitsToUint(change));
     atomicMax(counters[COUNTER_CACHE_PEAK], floatBitsToUint(luminance(light)));
 }

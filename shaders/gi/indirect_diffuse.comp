@@ -1,7 +1,8 @@
-// Adds indirect diffuse light. In: G-buffer, irradiance cache. Out: radiance in cd/m^2.
+// Adds indirect diffuse light. In: G-buffer; irradiance cache (GATHER 0), or what pixels have gathered
+// themselves, every one (1) or every fourth (2). Out: radiance in cd/m^2.
 //
-// An invocation takes 2x2 pixels: irradiance changes little between them, so that it is looked up
-// once and again only for pixels that lie on another surface.
+// From the cache, an invocation takes 2x2 pixels: irradiance changes little between them, so that it is
+// looked up once and again only for pixels that lie on another surface.
 #define CELLS_ACCESS readonly
 #include "lib/gbuffer.glsl"
 #include "lib/irradiance_read.glsl"
@@ -10,6 +11,7 @@
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
+#if GATHER == 0
 // Two pixels share their irradiance if neither normals nor places differ by more.
 const float SHARED_COSINE = 0.97;
 const float SHARED_VOXELS = 0.3;
@@ -39,3 +41,55 @@ void main()
         radiance[at].rgb += reflect_irradiance(s, known);
     }
 }
+#else
+layout(std430, binding = BIND_INDIRECT) readonly buffer indirect_storage
+{
+    vec4 gathered_sums[];
+};
+
+#if GATHER == 2
+// Joint bilateral upsampling (Kopf et al. 2007): the four gathered pixels around, by distance, and by
+// how much of the same surface they lie on.
+vec4 gathered_light(surface s, uvec2 pixel)
+{
+    uvec2 size = (frame.size.xy + 1u) / 2u;
+    vec2 at = vec2(pixel) * 0.5;
+    ivec2 low = ivec2(floor(at));
+    vec2 t = at - vec2(low);
+    vec4 sum = vec4(0.0);
+    float weight = 0.0;
+    for (int i = 0; i < 4; i++) {
+        ivec2 step = ivec2(i & 1, i >> 1);
+        ivec2 place = min(low + step, ivec2(size) - 1);
+        surface other = gbuffer_load(uvec2(place) * 2u);
+        if (other.shading >= SHADE_UNLIT)
+            continue;
+        vec2 near = mix(1.0 - t, t, vec2(step));
+        float off = abs(dot(other.position - s.position, s.geometric_normal)) *
+                    voxels.levels[0].size.y;
+        float cosine = max(dot(other.normal, s.normal), 0.0);
+        float w = (near.x * near.y + 1e-3) * exp(-4.0 * off) * pow(cosine, 8.0) + 1e-7;
+        sum += w * gathered_sums[uint(place.y) * size.x + uint(place.x)];
+        weight += w;
+    }
+    return weight > 0.0 ? sum / weight : vec4(0.0);
+}
+#endif
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size.xy)))
+        return;
+    surface s = gbuffer_load(pixel);
+    if (s.shading >= SHADE_UNLIT)
+        return;
+    uint at = pixel_index(pixel);
+#if GATHER == 2
+    vec4 light = gathered_light(s, pixel);
+#else
+    vec4 light = gathered_sums[at];
+#endif
+    radiance[at].rgb += reflect_irradiance(s, light / voxels.settle.y);
+}
+#endif

@@ -101,6 +101,19 @@ vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_l
 #endif
 }
 
+#if CONE_SKIP
+// How far a ray may go on where a coarse level is empty: filtering reaches the neighbours of the
+// voxel that a place lies in, so that half a voxel all around holds nothing.
+float empty_distance(uint level, vec3 position, vec3 direction)
+{
+    uint coarse = min(level + 2u, voxels.counts.x - 1u);
+    if (coarse <= level || inside_level(coarse, position) < 0.0)
+        return 0.0;
+    return sample_level(coarse, position, direction).a > 0.0 ? 0.0
+                                                             : 0.5 * voxels.levels[coarse].size.x;
+}
+#endif
+
 cone_light trace_cone(cone c, float occlusion_reach_m)
 {
     cone_light result;
@@ -123,6 +136,11 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
         vec4 value = sample_voxels(c.origin + middle * c.direction, c.direction, diameter, level);
         if (level >= voxels.counts.x)
             break;
+#if CONE_SKIP
+        if (value.a == 0.0)
+            length_m = max(length_m, empty_distance(level, c.origin + middle * c.direction,
+                                                    c.direction));
+#endif
         float absorbed = passed * (1.0 - exp(-value.a * length_m));
         result.light += value.rgb * (absorbed / max(value.a, 1e-12));
         result.occlusion += absorbed * max(1.0 - middle / occlusion_reach_m, 0.0);
@@ -138,14 +156,4 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     }
     result.transmittance = passed > CONE_OPAQUE ? passed : 0.0;
     return result;
-}
-
-// An orthonormal frame about n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
-mat3 frame_about(vec3 n)
-{
-    float turn = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (turn + n.z);
-    float b = n.x * n.y * a;
-    return mat3(vec3(1.0 + turn * n.x * n.x * a, turn * b, -turn * n.x),
-                vec3(b, turn + n.y * n.y * a, -n.y), n);
 }

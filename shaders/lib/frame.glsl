@@ -50,3 +50,13 @@ vec3 octahedral_decode(vec2 p)
         n.xy = (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
     return normalize(n);
 }
+
+// An orthonormal frame about n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+mat3 frame_about(vec3 n)
+{
+    float turn = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (turn + n.z);
+    float b = n.x * n.y * a;
+    return mat3(vec3(1.0 + turn * n.x * n.x * a, turn * b, -turn * n.x),
+                vec3(b, turn + n.y * n.y * a, -n.y), n);
+}

@@ -15,14 +15,13 @@ vec3 reflect_irradiance(surface s, vec4 light)
     vec3 layer = s.f0 * scale_bias.x + s.f90 * scale_bias.y;
     float kept = 1.0 - max(layer.r, max(layer.g, layer.b));
     reflectance = s.base_color * ((1.0 - s.metallic) * kept);
+#if INDIRECT_SPECULAR
     // Lobes that are too wide for a cone of their own see about what the hemisphere sees.
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
-    vec3 glossy = f0 * scale_bias.x + f90 * scale_bias.y;
-#if INDIRECT_SPECULAR
-    glossy *= step(voxels.light.z, s.roughness);
+    if (s.roughness >= voxels.light.z)
+        reflectance += f0 * scale_bias.x + f90 * scale_bias.y;
 #endif
-    reflectance += glossy;
 #endif
     float open = s.occlusion;
 #if AMBIENT_OCCLUSION

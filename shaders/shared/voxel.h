@@ -17,8 +17,8 @@
 #define VOXEL_TAG_SURFEL 0x80000000u
 #define VOXEL_NONE       0xffffffffu
 
-// A cell is an occupied voxel. Word 0: slot in its level | level << 28, or VOXEL_NONE; word 1: first
-// surfel; then 1 + face record for each face that has a surface, else 0.
+// A cell is an occupied voxel. Word 0: slot in its level | level << 28, or VOXEL_NONE; word 1:
+// first surfel; then 1 + face record for each face that has a surface, else 0.
 #define CELL_WORDS     10u
 #define CELL_SURFEL    1u
 #define CELL_FACES     2u
@@ -26,19 +26,19 @@
 #define CELL_SLOT_MASK 0x0fffffffu
 
 // A record of the irradiance cache: a voxel face that has a surface. Its words, and behind them one
-// for each cone: where it hits (distance in voxels of the finest level) and the share that leaves the
-// volume, as halves. So long as geometry stays, a cone's light is one look-up there.
-#define FACE_WORDS    12u // before the cones
-#define FACE_NORMAL   0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: no surface any more
-#define FACE_PLACE    1u  // mean, within the voxel, 3 x 10 bits
-#define FACE_LIGHT    2u  // two words: irradiance / pi / scale as 3 halves, openness as a half
-#define FACE_STATE    4u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
-#define FACE_REQUEST  5u  // frame of the newest request
-#define FACE_DIRECT   6u  // two words: emitted and directly lit radiance / scale, optical depth
-#define FACE_ALBEDO   8u  // reflectance, 3 x 10 bits
-#define FACE_CELL     9u  // cell * 8 + face
-#define FACE_VALID    0x400000u // its light means something
-#define FACE_MARCHED  0x800000u // its cones' hits, too; epoch tells of which geometry
+// for each cone: where it hits (distance in voxels of the finest level) and the share that leaves
+// the volume, as halves. So long as geometry stays, a cone's light is one look-up there.
+#define FACE_WORDS      12u // before the cones
+#define FACE_NORMAL     0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: no surface any more
+#define FACE_PLACE      1u  // mean, within the voxel, 3 x 10 bits
+#define FACE_LIGHT      2u  // two words: irradiance / pi / scale as 3 halves, openness as a half
+#define FACE_STATE      4u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
+#define FACE_REQUEST    5u  // frame of the newest request
+#define FACE_DIRECT     6u  // two words: emitted and directly lit radiance / scale, optical depth
+#define FACE_ALBEDO     8u  // reflectance, 3 x 10 bits
+#define FACE_CELL       9u  // cell * 8 + face
+#define FACE_VALID      0x400000u // its light means something
+#define FACE_MARCHED    0x800000u // its cones' hits, too; epoch tells of which geometry
 #define FACE_CHANGE_BIT 16
 #define FACE_EPOCH_BIT  24
 
@@ -66,18 +66,19 @@
 #define COUNTER_OVERFLOW         5
 #define COUNTER_LIST_OVERFLOW    6
 #define COUNTER_CACHE_LEFT       7 // entries that the newest selection found stale
-#define COUNTER_CACHE_CHANGE     8 // largest change of an entry in this generation (bits of a float)
-#define COUNTER_CACHE_TRACED     9
-#define COUNTER_CACHE_PEAK       10 // largest light of one, likewise
-#define COUNTER_TILES            12 // arguments of the pass over large triangles
-#define COUNTER_MARCH            16 // arguments of tracing cones; number of faces
-#define COUNTER_GATHER           20 // likewise of looking up their hits
-#define COUNTER_CACHE_CLASSES    24 // faces of each class of urgency
-#define COUNTER_FACES            30
-#define COUNTER_FREE_FACES       31
-#define COUNTER_LISTS            32
-#define COUNTER_LIST_WORDS       4
-#define COUNTER_COUNT            (COUNTER_LISTS + VOXEL_MAX_LEVELS * COUNTER_LIST_WORDS)
+#define COUNTER_CACHE_CHANGE                                                                       \
+    8 // largest relative change of a face in this generation (bits of a float)
+#define COUNTER_CACHE_TRACED  9
+#define COUNTER_CACHE_PEAK    10 // largest light of one, likewise
+#define COUNTER_TILES         12 // arguments of the pass over large triangles
+#define COUNTER_MARCH         16 // arguments of tracing cones; number of faces
+#define COUNTER_GATHER        20 // likewise of looking up their hits
+#define COUNTER_CACHE_CLASSES 24 // faces of each class of urgency
+#define COUNTER_FACES         30
+#define COUNTER_FREE_FACES    31
+#define COUNTER_LISTS         32
+#define COUNTER_LIST_WORDS    4
+#define COUNTER_COUNT         (COUNTER_LISTS + VOXEL_MAX_LEVELS * COUNTER_LIST_WORDS)
 
 // Faces to march: never marched and asked for by pixels, the rest of those asked for, others. Faces
 // to gather: asked for and lively, asked for, others.
@@ -118,12 +119,14 @@ struct voxel_block {
     uvec4 counts; // levels, faces in the texture, capacity of cells, capacity of surfels
     uvec4 work;   // regions, voxels in them, chunks, capacity of tiles
     uvec4 cache;  // generation, frame, budget of entries, 1 if bounces feed back
-    vec4 light;   // reach of ambient occlusion in m, intensity of indirect light, unused, unused
-    vec4 march;   // of the cache's cones: step over diameter, start offset in voxels, their number,
-                  // tangent of the half-angle
+    vec4 light;   // reach of ambient occlusion in m, intensity of indirect light, roughness above
+                  // which gloss takes the cache's light, widest cone in m
+    vec4 settle; // brightest light of the former generation / scale, pictures in pixels' sums, -, -
+    vec4 march;  // of the cache's cones: step over diameter, start offset in voxels, their number,
+                 // tangent of the half-angle
     vec4 pixel_march; // of the cones that start at pixels, likewise
-    uvec4 shape;   // levels that have cells of their own: those beyond are mips of the last; words of a
-                   // face record; their capacity; epoch of geometry
+    uvec4 shape; // levels that have cells of their own: those beyond are mips of the last; words of
+                 // a face record; their capacity; epoch of geometry
     uvec4 options; // capacity of lists; first level to light, or the one to filter; end of those;
                    // instances
     vec4 cones[VOXEL_MAX_CONES]; // direction about +Z; w: weight, cosine over the sum of cosines
@@ -134,7 +137,7 @@ struct voxel_block {
 #ifdef __STDC__
 static_assert(sizeof(struct voxel_level_block) == 5 * sizeof(vec4), "no padding");
 static_assert(sizeof(struct voxel_block) ==
-                  (9 + 2 * VOXEL_MAX_CONES + 5 * VOXEL_MAX_LEVELS) * sizeof(vec4),
+                  (10 + 2 * VOXEL_MAX_CONES + 5 * VOXEL_MAX_LEVELS) * sizeof(vec4),
               "no padding");
 #endif
 

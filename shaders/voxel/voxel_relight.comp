@@ -90,11 +90,15 @@ float coverage(uint mask, uint axis)
     return 0.25 * float(bitCount(low | high));
 }
 
-vec3 direct_irradiance(vec3 position, vec3 normal)
+// Of a voxel's face, averaged over places around its middle, since shadows are finer than voxels. A
+// little above, out of the relief that the mean place may lie in.
+const float TAP_LIFT = 0.3;
+const float TAP_SPREAD = 0.3;
+
+vec3 direct_irradiance(vec3 position, vec3 normal, float voxel_m)
 {
 #if PUNCTUAL_LIGHTS || AREA_LIGHTS
     surface s;
-    s.position = position;
     s.normal = normal;
     s.geometric_normal = normal;
     s.view = normal;
@@ -106,7 +110,14 @@ vec3 direct_irradiance(vec3 position, vec3 normal)
     s.occlusion = 1.0;
     s.emission = vec3(0.0);
     s.shading = SHADE_PBR;
-    return direct_light(s, uvec2(0u)) / voxels.anchor.w;
+    mat3 axes = frame_about(normal);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < TAPS; i++) {
+        vec2 at = TAPS == 1 ? vec2(0.0) : vec2((i & 1) * 2 - 1, (i >> 1) * 2 - 1) * TAP_SPREAD;
+        s.position = position + (axes[0] * at.x + axes[1] * at.y + normal * TAP_LIFT) * voxel_m;
+        sum += direct_light(s, uvec2(0u));
+    }
+    return sum / (float(TAPS) * voxels.anchor.w);
 #else
     return vec3(0.0);
 #endif
@@ -162,7 +173,7 @@ void main()
         vec3 position = voxels.anchor.xyz + (corner + place) * voxels.levels[level].size.x;
         vec3 albedo = clamp(sides[i].reflectance * inverse, 0.0, 1.0);
         vec3 direct = sides[i].emission * (inverse / voxels.anchor.w) +
-                      albedo * direct_irradiance(position, normal);
+                      albedo * direct_irradiance(position, normal, voxels.levels[level].size.x);
         // In proportion to what is covered: the parts of a slanted wall that lie in neighbouring
         // voxels then add up to a whole one.
         float opacity = min(sides[i].opacity * inverse, 1.0);

@@ -1,0 +1,41 @@
+// Gathers irradiance at pixels, at every one (GATHER 1) or at every fourth (2), by cones that are
+// turned from pixel to pixel and from frame to frame. In: G-buffer, radiance texture. Out: sums over
+// the frames in which nothing moved.
+#define CONE_SMOOTH 1
+#define PIXEL_CONES 1
+#include "lib/gbuffer.glsl"
+#include "lib/gather.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
+{
+    vec4 gathered_sums[];
+};
+
+void main()
+{
+    uvec2 place = gl_GlobalInvocationID.xy;
+    uvec2 size = (frame.size.xy + uint(GATHER) - 1u) / uint(GATHER);
+    uvec2 pixel = place * uint(GATHER);
+    if (any(greaterThanEqual(place, size)))
+        return;
+    surface s = gbuffer_load(pixel);
+    uint at = place.y * size.x + place.x;
+    bool first = voxels.settle.y <= 1.0;
+    if (s.shading >= SHADE_UNLIT)
+        return;
+    // Sixteen turns in a square of 4x4 pixels, moved on by the golden ratio each frame.
+    uvec2 cell = place & 3u;
+    uint order = ((cell.x ^ cell.y) & 1u) * 8u + (cell.x & 1u) * 4u + ((cell.x ^ cell.y) >> 1) * 2u +
+                 (cell.x >> 1);
+    float turn = 2.0 * PI * fract(float(order) / 16.0 + voxels.settle.y * 0.61803399);
+    gather_cones g = begin_gather(voxel_position(s.position), s.normal, vec2(cos(turn), sin(turn)));
+    gathered found = no_light();
+    for (uint i = 0u; i < uint(MARCH_OF_SET.z); i++) {
+        uint hit;
+        add_cone(g, i, found, hit);
+    }
+    vec4 sum = first ? vec4(0.0) : gathered_sums[at];
+    gathered_sums[at] = sum + vec4(found.light, found.openness);
+}
