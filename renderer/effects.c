@@ -65,8 +65,9 @@ static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t 
 // Effects of global illumination. Returns those that the settings allow: the rest stay off even
 // where everything is forced.
 static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *resident,
-                              const struct render_settings *settings)
+                              const struct frame_params *params)
 {
+    const struct render_settings *settings = &params->settings;
     const struct resident_counts *counts = &resident->counts;
     static const enum effect all[] = {
         EFFECT_INDIRECT_DIFFUSE,  EFFECT_BOUNCE,       EFFECT_INDIRECT_SPECULAR,
@@ -94,8 +95,10 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
          "no specular material in the scene"},
         {EFFECT_REFRACTION, settings->refraction, counts->transmissive_materials > 0,
          "a material transmits light", "no transmissive material in the scene"},
-        {EFFECT_SOFT_SHADOWS, settings->soft_shadows && settings->shadows, counts->sized_lights > 0,
-         "a light has a size", "no light has a size"},
+        {EFFECT_SOFT_SHADOWS,
+         settings->soft_shadows && settings->shadows &&
+             quality_levels[params->quality].soft_shadows,
+         counts->sized_lights > 0, "a light has a size", "no light has a size"},
         {EFFECT_AMBIENT_OCCLUSION, settings->ambient_occlusion,
          source && counts->reflective_materials > 0, "asked for", "no indirect light to darken"},
         {EFFECT_ENVIRONMENT_LIGHT, settings->environment_light, environment,
@@ -160,7 +163,7 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
            automatic ? "exposure is automatic" : "exposure is fixed");
     uint32_t chosen = EFFECT_BIT(EFFECT_AUTO_EXPOSURE) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                       ((1u << EFFECT_COUNT) - EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE));
-    uint32_t allowed = plan_indirect(plan, resident, settings) | ~chosen;
+    uint32_t allowed = plan_indirect(plan, resident, params) | ~chosen;
     if (settings->force_all_effects)
         for (int i = 0; i < EFFECT_COUNT; i++)
             if ((allowed & EFFECT_BIT(i)) && !(plan->bits & EFFECT_BIT(i)))

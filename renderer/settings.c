@@ -74,6 +74,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                       .cone_set = CONE_SET_16,
                       .cone_step = 0.75f,
                       .gather_mode = GATHER_HALF,
+                      .soft_shadows = true,
                       .specular_roughness = 0.5f,
                       .still_frames = 4},
     [QUALITY_FINAL] = {.resolution_scale = 2.0f,
@@ -84,6 +85,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                        .cone_set = CONE_SET_16,
                        .cone_step = 0.5f,
                        .gather_mode = GATHER_PIXEL,
+                       .soft_shadows = true,
                        .specular_roughness = 0.7f,
                        .still_frames = 8},
 };

@@ -146,6 +146,7 @@ struct quality_level {
     enum cone_set cone_set;
     float cone_step;
     enum gather_mode gather_mode;
+    bool soft_shadows;
     float specular_roughness; // rougher surfaces reflect as if by the cached irradiance
     uint32_t still_frames;    // pictures with turned cones that are averaged when nothing moves
 };

@@ -30,10 +30,11 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
 const struct pass direct_light_pass = {
     .name = "direct_light",
     .effects_used = DIRECT_LIGHT_EFFECTS,
-    .use_count = 5,
+    .use_count = 6,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},
              {RESOURCE_SHADOW_MAP, ACCESS_READ},
+             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
              {RESOURCE_LIGHT_MASKS, ACCESS_READ},
              {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
     .skip_reason = direct_light_skip_reason,

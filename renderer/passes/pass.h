@@ -84,10 +84,11 @@ struct pass {
 
 extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, voxelize_pass,
     voxel_relight_pass, voxel_filter_pass, irradiance_cache_pass, light_tiles_pass,
-    environment_pass, direct_light_pass, emission_pass, indirect_diffuse_pass, transparency_pass,
-    exposure_pass, debug_view_pass, tonemap_pass, readback_pass;
+    environment_pass, direct_light_pass, emission_pass, indirect_diffuse_pass,
+    indirect_specular_pass, transparency_pass, exposure_pass, debug_view_pass, tonemap_pass,
+    readback_pass;
 
-#define PASS_COUNT 17
+#define PASS_COUNT 18
 extern const struct pass *const all_passes[PASS_COUNT];
 
 // Runs the passes that are needed, in order, timing each. False with a message if one fails.

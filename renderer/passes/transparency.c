@@ -21,7 +21,9 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
     const struct gpu_program *tiles =
         list ? pass_program(frame, pass, "light/transparent_tiles.comp", "", out_error) : NULL;
     const struct gpu_program *shade =
-        tiles ? pass_program(frame, pass, "light/transparency.comp", "", out_error) : NULL;
+        !tiles          ? NULL
+        : frame->volume ? voxel_program(frame, pass, "light/transparency.comp", "", out_error)
+                        : pass_program(frame, pass, "light/transparency.comp", "", out_error);
     if (!shade)
         return false;
     gpu_buffer_clear(view->fragments);
@@ -48,11 +50,13 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
 
 const struct pass transparency_pass = {
     .name = "transparency",
-    .effects_used = SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ENVIRONMENT),
-    .use_count = 5,
+    .effects_used = SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ENVIRONMENT) |
+                    EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_REFRACTION),
+    .use_count = 6,
     .uses = {{RESOURCE_DEPTH, ACCESS_READ},
              {RESOURCE_FRAGMENTS, ACCESS_WRITE},
              {RESOURCE_SHADOW_MAP, ACCESS_READ},
+             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
              {RESOURCE_LIGHT_MASKS, ACCESS_READ},
              {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
     .skip_reason = transparency_skip_reason,

@@ -58,6 +58,7 @@ static void fill_material_block(struct material_block *block, const struct scene
         block->attenuation_color[c] = material->attenuation_color[c];
     }
     block->emission[3] = material->alpha_cutoff;
+    block->attenuation_color[3] = material->ior;
     block->surface[0] = material->metallic;
     block->surface[1] = material->roughness;
     block->surface[2] = material->normal_scale;

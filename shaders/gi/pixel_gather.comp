@@ -25,11 +25,12 @@ void main()
     bool first = voxels.settle.y <= 1.0;
     if (s.shading >= SHADE_UNLIT)
         return;
-    // Sixteen turns in a square of 4x4 pixels, moved on by the golden ratio each frame.
-    uvec2 cell = place & 3u;
-    uint order = ((cell.x ^ cell.y) & 1u) * 8u + (cell.x & 1u) * 4u + ((cell.x ^ cell.y) >> 1) * 2u +
-                 (cell.x >> 1);
-    float turn = 2.0 * PI * fract(float(order) / 16.0 + voxels.settle.y * 0.61803399);
+    // Four turns in a square of 2x2 pixels that change places from frame to frame: after four frames
+    // every pixel has seen the same, and then the next four follow.
+    uint order = (place.x & 1u) + 2u * (place.y & 1u);
+    float frame_number = voxels.settle.y - 1.0;
+    float turn = 2.0 * PI * fract((float(order) + frame_number) * 0.25 +
+                                  floor(frame_number * 0.25) * 0.61803399);
     gather_cones g = begin_gather(voxel_position(s.position), s.normal, vec2(cos(turn), sin(turn)));
     gathered found = no_light();
     for (uint i = 0u; i < uint(MARCH_OF_SET.z); i++) {

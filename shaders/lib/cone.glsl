@@ -6,6 +6,8 @@
 // Crassin et al. 2011, "Interactive Indirect Illumination Using Voxel Cone Tracing"; flakes as in
 // Heitz et al. 2015, "The SGGX Microflake Distribution".) Steps attenuate by exp(-depth), so their
 // length does not change what a wall lets through.
+//
+// CONE_SMOOTH 1 blends two levels, CONE_SKIP 1 leaps over empty space; who includes this first says.
 #include "lib/voxel.glsl"
 
 layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;

@@ -1,8 +1,6 @@
 // Irradiance from the hemisphere's cones.
 #include "lib/cone.glsl"
-#if ENVIRONMENT_LIGHT
 #include "lib/environment.glsl"
-#endif
 
 // Which of the two sets of cones: the cache's, or that of pixels.
 #if PIXEL_CONES

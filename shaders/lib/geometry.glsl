@@ -107,6 +107,7 @@ struct layer {
     float alpha;        // coverage (alphaMode BLEND)
     float transmission; // share of the diffuse part that passes through
     float thickness_m;
+    float ior;
     vec3 attenuation_color;
     float attenuation_distance_m;
 };
@@ -223,6 +224,7 @@ surface load_surface(uint id, vec2 pixel, out layer through)
     through.alpha = blend ? clamp(base.a, 0.0, 1.0) : 1.0;
     through.transmission = transmission * (1.0 - s.metallic);
     through.thickness_m = material.dielectric.w;
+    through.ior = material.attenuation_color.w;
     through.attenuation_color = material.attenuation_color.rgb;
     through.attenuation_distance_m = material.specular_color.w;
     return s;

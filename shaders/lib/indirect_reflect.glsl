@@ -1,8 +1,6 @@
 // What a surface makes of indirect irradiance. The occlusion map applies to this alone, since it
 // stands for detail that neither shadow maps nor voxels hold.
-#if SPECULAR
 #include "lib/environment.glsl"
-#endif
 #include "lib/voxel.glsl"
 
 // `light`: irradiance / pi in units of the volume's scale, and openness. Radiance in cd/m^2.

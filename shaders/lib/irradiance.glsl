@@ -10,12 +10,16 @@ void request_faces(vec3 world, vec3 normal, uint frame_number)
     for (uint i = 0u; i < 2u && level + i < voxels.shape.x; i++) {
         vec3 at = position * voxels.levels[level + i].size.y - 0.5;
         ivec3 low = ivec3(floor(at));
-        uint face = dominant_face(normal);
         for (int j = 0; j < 8; j++) {
             uint cell = find_cell(level + i, low + ivec3(j & 1, (j >> 1) & 1, j >> 2));
-            uint words = cell == VOXEL_NONE ? VOXEL_NONE : cell_face(cell, face);
-            if (words != VOXEL_NONE)
-                faces[words + FACE_REQUEST] = frame_number;
+            if (cell == VOXEL_NONE)
+                continue;
+            for (uint axis = 0u; axis < 3u; axis++) {
+                float along = axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z;
+                uint words = cell_face(cell, 2u * axis + (along < 0.0 ? 1u : 0u));
+                if (words != VOXEL_NONE && along * along > LEAST_SHARE)
+                    faces[words + FACE_REQUEST] = frame_number;
+            }
         }
         if (room >= 4.0)
             return;

@@ -19,31 +19,42 @@ uint cache_level(vec3 position, out float out_room)
     return voxels.shape.x;
 }
 
-// Irradiance / pi / scale and openness, of weight a: trilinear between the faces of the eight voxels
-// around a place that look the way of `normal`. `position` is relative to the anchor.
-void add_cached(uint level, vec3 position, vec3 normal, float share, inout vec4 sum,
-                inout float weight)
+// A surface takes from the faces of each axis that its normal has a share in, so that nothing jumps
+// where the dominant one changes.
+const float LEAST_SHARE = 0.04;
+
+// Adds irradiance / pi / scale and openness, trilinear between the faces of the eight voxels around a
+// place that look the way of `normal`. `position` is relative to the anchor.
+void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout float weight)
 {
     vec3 at = position * voxels.levels[level].size.y - 0.5;
     ivec3 low = ivec3(floor(at));
     vec3 t = at - vec3(low);
-    uint face = dominant_face(normal);
+    vec3 shares = normal * normal;
+    uint axes = (shares.x > LEAST_SHARE ? 1u : 0u) | (shares.y > LEAST_SHARE ? 2u : 0u) |
+                (shares.z > LEAST_SHARE ? 4u : 0u);
     for (int i = 0; i < 8; i++) {
         ivec3 step = ivec3(i & 1, (i >> 1) & 1, i >> 2);
         uint cell = find_cell(level, low + step);
         if (cell == VOXEL_NONE)
             continue;
-        uint words = cell_face(cell, face);
-        if (words == VOXEL_NONE)
-            continue;
-        uint direction = faces[words + FACE_NORMAL];
-        if (direction == VOXEL_NONE || (faces[words + FACE_STATE] & FACE_VALID) == 0u)
-            continue;
         vec3 near = mix(1.0 - t, t, vec3(step));
-        float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
-        float w = share * (near.x * near.y * near.z + 1e-4) * facing * facing;
-        sum += w * face_light(words);
-        weight += w;
+        float share = near.x * near.y * near.z + 1e-4;
+        for (uint left = axes; left != 0u; left &= left - 1u) {
+            uint axis = uint(findLSB(left));
+            float along = axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z;
+            uint words = cell_face(cell, 2u * axis + (along < 0.0 ? 1u : 0u));
+            if (words == VOXEL_NONE)
+                continue;
+            uint direction = faces[words + FACE_NORMAL];
+            if (direction == VOXEL_NONE || (faces[words + FACE_STATE] & FACE_VALID) == 0u)
+                continue;
+            float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
+            facing *= facing;
+            float w = share * facing * facing;
+            sum += w * face_light(words);
+            weight += w;
+        }
     }
 }
 
@@ -83,7 +94,7 @@ vec4 cached_irradiance(vec3 world, vec3 normal)
     for (uint i = 0u; i < levels; i++) {
         vec4 part = vec4(0.0);
         float part_weight = 0.0;
-        add_cached(level + i, position, normal, 1.0, part, part_weight);
+        add_cached(level + i, position, normal, part, part_weight);
         float share = i == 0u ? own : 1.0 - own;
         if (part_weight > 0.0) {
             sum += part * (share / part_weight);
@@ -91,7 +102,7 @@ vec4 cached_irradiance(vec3 world, vec3 normal)
         }
     }
 #else
-    add_cached(level, position, normal, 1.0, sum, weight);
+    add_cached(level, position, normal, sum, weight);
 #endif
     if (weight < 1e-6)
         add_any_face(level, position, normal, sum, weight);

@@ -4,6 +4,8 @@
 #include "lib/shadow.glsl"
 #endif
 
+#include "lib/cone.glsl" // outside of conditions, since files are included once
+
 #if PUNCTUAL_LIGHTS
 layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
 {
@@ -28,6 +30,32 @@ layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 
 // Nearer than this to a light (1 mm) the inverse square no longer grows.
 const float MIN_LIGHT_DISTANCE_SQUARED = 1e-6;
+
+#if SOFT_SHADOWS
+// Share of a light of a size that reaches a point, by a cone towards it; `hard` is what a shadow map
+// says of its middle. Voxels know nothing of what is nearer than they are large, but where penumbrae
+// are narrower than a voxel the map is right anyway.
+float soft_visibility(float hard, vec3 position, vec3 normal, vec3 to_light, float distance_m,
+                      float radius_m)
+{
+    vec3 origin = voxel_position(position);
+    float voxel = voxels.levels[0].size.x;
+    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, origin) < 0.0; level++)
+        voxel = voxels.levels[level + 1u].size.x;
+    cone c;
+    c.origin = origin + normal * (voxels.pixel_march.y * voxel);
+    c.direction = to_light;
+    c.tangent = max(radius_m / max(distance_m, 1e-6), 1e-3);
+    c.step = 1.0;
+    c.widest = voxels.light.w;
+    // Not into the voxels around the light, however wide the cone has become there.
+    c.reach_m = (distance_m - (voxels.pixel_march.y + 2.0) * voxel) / (1.0 + 3.0 * c.tangent);
+    cone_light found = trace_cone(c, 1.0);
+    float penumbra = radius_m * found.hit_m / max(distance_m - found.hit_m, 1e-6);
+    float share = found.transmittance < 0.99 ? smoothstep(0.5, 2.0, penumbra / voxel) : 0.0;
+    return mix(hard, found.transmittance, share);
+}
+#endif
 
 #if PUNCTUAL_LIGHTS
 float distance_attenuation(float squared, float range_m)
@@ -59,9 +87,17 @@ vec3 punctual_light(surface s, light_block light)
         return vec3(0.0);
     vec3 reflected = brdf_cosine(s, l) * light.radiance.rgb * strength;
 #if SHADOWS
-    if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0)
-        reflected *= shadow_visibility(light.shadow, light.position.xyz, s.position,
-                                       s.geometric_normal, l);
+    if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0) {
+        float lit = shadow_visibility(light.shadow, light.position.xyz, s.position,
+                                      s.geometric_normal, l);
+#if SOFT_SHADOWS
+        bool directional = int(light.position.w) == LIGHT_DIRECTIONAL;
+        if (light.radiance.w > 0.0 && !directional && light.shadow.x != NO_SHADOW)
+            lit = soft_visibility(lit, s.position, s.geometric_normal, l,
+                                  length(light.position.xyz - s.position), light.radiance.w);
+#endif
+        reflected *= lit;
+    }
 #endif
     return reflected;
 }
@@ -173,9 +209,19 @@ vec3 area_light(surface s, area_light_block light)
     reflected += area_specular(s, light, corners, reversed);
 #endif
 #if SHADOWS
-    if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0)
-        reflected *= shadow_visibility(light.shadow, light.center.xyz, s.position,
-                                       s.geometric_normal, to_light);
+    if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0) {
+        float lit = shadow_visibility(light.shadow, light.center.xyz, s.position,
+                                      s.geometric_normal, to_light);
+#if SOFT_SHADOWS
+        // As a disk of the emitter's area, seen at its slant.
+        float cosine = abs(dot(light.normal.xyz, to_light));
+        if (light.shadow.x != NO_SHADOW)
+            lit = soft_visibility(lit, s.position, s.geometric_normal, to_light,
+                                  length(light.center.xyz - s.position),
+                                  sqrt(light.radiance.w * cosine / PI));
+#endif
+        reflected *= lit;
+    }
 #endif
     return reflected;
 }

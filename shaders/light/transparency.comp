@@ -6,9 +6,8 @@
 // its thickness (KHR_materials_volume); its specular part reflects.
 #include "lib/geometry.glsl"
 #include "lib/lighting.glsl"
-#if ENVIRONMENT
 #include "lib/environment.glsl"
-#endif
+#include "lib/gloss.glsl"
 #include "lib/radiance.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
@@ -86,11 +85,34 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
 #if PUNCTUAL_LIGHTS || AREA_LIGHTS
     sum += direct_light(s, pixel);
 #endif
-#if ENVIRONMENT
+#if VOXEL_LIGHT
+    vec3 mirror = reflect(-s.view, s.normal);
+    vec2 scale_bias = environment_brdf(s.roughness, clamp(dot(s.normal, s.view), 0.0, 1.0));
+    vec3 f0 = mix(s.f0, s.base_color, s.metallic);
+    vec3 reflected = f0 * scale_bias.x + mix(s.f90, 1.0, s.metallic) * scale_bias.y;
+    sum += reflected * trace_gloss(s.position, s.geometric_normal, mirror, s.roughness);
+#elif ENVIRONMENT
     sum += environment_light(s);
 #endif
     return sum * through.alpha;
 }
+
+#if REFRACTION
+// Light through the volume below a surface, by one cone along the refracted ray, as wide as roughness
+// makes it (KHR_materials_volume). Both faces of a slab bend the ray alike, so it is taken to leave
+// the volume as it came; where it cannot enter, it is reflected.
+vec3 refracted_light(surface s, layer through)
+{
+    float ratio = 1.0 / max(through.ior, 1.0);
+    vec3 inside = refract(-s.view, s.normal, ratio);
+    if (dot(inside, inside) == 0.0)
+        inside = reflect(-s.view, s.normal);
+    // The lobe of transmission narrows as the interface bends less.
+    float roughness = s.roughness * clamp(2.0 * (1.0 - ratio), 0.0, 1.0);
+    vec3 leaving = s.position + inside * through.thickness_m;
+    return trace_gloss(leaving, -s.geometric_normal * 0.5, normalize(inside), roughness);
+}
+#endif
 
 void main()
 {
@@ -107,7 +129,12 @@ void main()
     for (uint i = 0u; i < count; i++) {
         layer through;
         surface s = load_surface(layers[i], vec2(pixel), through);
-        sum = sum * transmittance(s, through) + layer_radiance(s, through, pixel);
+        vec3 behind = sum;
+#if REFRACTION
+        if (through.thickness_m > 0.0 && through.transmission > 0.0)
+            behind = mix(sum, refracted_light(s, through), through.alpha);
+#endif
+        sum = behind * transmittance(s, through) + layer_radiance(s, through, pixel);
     }
     radiance[at] = vec4(sum, 1.0);
 }

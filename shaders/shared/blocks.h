@@ -35,12 +35,12 @@ struct instance_block {
 
 struct material_block {
     vec4 base_color;
-    vec4 emission;       // cd/m^2; w: alpha cut-off
-    vec4 surface;        // metallic, roughness, normal scale, occlusion strength
-    vec4 dielectric;     // F0 from IOR, specular weight, transmission, thickness in metres
-    vec4 specular_color; // w: attenuation distance in metres, 0 none
-    vec4 attenuation_color;
-    uvec4 info; // flags, first texture, mask of texture slots in use, unused
+    vec4 emission;          // cd/m^2; w: alpha cut-off
+    vec4 surface;           // metallic, roughness, normal scale, occlusion strength
+    vec4 dielectric;        // F0 from IOR, specular weight, transmission, thickness in metres
+    vec4 specular_color;    // w: attenuation distance in metres, 0 none
+    vec4 attenuation_color; // w: index of refraction
+    uvec4 info;             // flags, first texture, mask of texture slots in use, unused
 };
 
 struct texture_block {

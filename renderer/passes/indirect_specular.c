@@ -1,0 +1,43 @@
+// What glossy surfaces mirror: one cone a pixel, in the tiles that hold such surfaces.
+#include "renderer/gi/volume.h"
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *indirect_specular_skip_reason(const struct frame *frame)
+{
+    if (!frame->volume || !frame_has(frame, EFFECT_INDIRECT_SPECULAR))
+        return frame->view->last_plan.reasons[EFFECT_INDIRECT_SPECULAR];
+    return frame->params->debug_view == DEBUG_VIEW_FINAL ? NULL : "the debug view shows none";
+}
+
+static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
+                                  struct error *out_error)
+{
+    struct view *view = frame->view;
+    const struct gpu_program *list =
+        voxel_program(frame, pass, "gi/glossy_tiles.comp", "", out_error);
+    const struct gpu_program *trace =
+        list ? voxel_program(frame, pass, "gi/indirect_specular.comp", "", out_error) : NULL;
+    if (!trace)
+        return false;
+    static const uint32_t no_groups[4] = {0, 1, 1, 0};
+    gpu_buffer_write(view->glossy_tiles, 0, sizeof(no_groups), no_groups);
+    gpu_bind_storage(frame->gpu, BIND_TILES, view->glossy_tiles);
+    pass_dispatch_pixels(frame, list);
+    gpu_barrier(frame->gpu);
+    gpu_dispatch_indirect(frame->gpu, trace, view->glossy_tiles, 0);
+    gpu_bind_storage(frame->gpu, BIND_TILES, view->transparent_tiles);
+    return true;
+}
+
+const struct pass indirect_specular_pass = {
+    .name = "indirect_specular",
+    .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT),
+    .use_count = 4,
+    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
+             {RESOURCE_DEPTH, ACCESS_READ},
+             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
+             {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
+    .skip_reason = indirect_specular_skip_reason,
+    .run = indirect_specular_run,
+};

@@ -1,0 +1,31 @@
+// Lists the tiles of GROUP_EDGE^2 pixels that hold a surface whose reflection deserves a cone, for
+// indirect dispatch. In: G-buffer. Out: dispatch arguments and tile numbers, in any order.
+#include "lib/gbuffer.glsl"
+#include "lib/voxel.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+layout(std430, binding = BIND_TILES) buffer tile_storage
+{
+    uvec4 tile_arguments; // groups in x, y, z; -
+    uint tiles[];         // row * 65536 + column
+};
+
+shared uint any_glossy;
+
+void main()
+{
+    if (gl_LocalInvocationIndex == 0u)
+        any_glossy = 0u;
+    barrier();
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (all(lessThan(pixel, frame.size.xy))) {
+        surface s = gbuffer_load(pixel);
+        bool reflects = s.metallic > 0.0 || s.f90 > 0.0;
+        if (s.shading < SHADE_UNLIT && reflects && s.roughness < voxels.light.z)
+            atomicOr(any_glossy, 1u);
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u && any_glossy != 0u)
+        tiles[atomicAdd(tile_arguments.x, 1u)] = gl_WorkGroupID.y * 65536u + gl_WorkGroupID.x;
+}

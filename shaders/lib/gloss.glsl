@@ -1,0 +1,33 @@
+// One cone along a direction, as wide as a glossy lobe of the given roughness.
+#include "lib/cone.glsl"
+#include "lib/environment.glsl"
+
+// Microfacet normals of GGX lie within atan(alpha) of the mean in half of all cases; reflection
+// doubles the angle, and most of the lobe's energy lies within a little less.
+float lobe_tangent(float roughness)
+{
+    float alpha = roughness * roughness;
+    return max(1.2 * alpha, 0.01);
+}
+
+// Radiance in cd/m^2. `normal` lifts the start off the surface.
+vec3 trace_gloss(vec3 position_world, vec3 normal, vec3 direction, float roughness)
+{
+    vec3 origin = voxel_position(position_world);
+    float voxel = voxels.levels[0].size.x;
+    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, origin) < 0.0; level++)
+        voxel = voxels.levels[level + 1u].size.x;
+    cone c;
+    c.origin = origin + normal * (voxels.pixel_march.y * voxel);
+    c.direction = direction;
+    c.tangent = lobe_tangent(roughness);
+    c.step = min(voxels.pixel_march.x, 1.0);
+    c.widest = 4.0 * voxels.light.w;
+    c.reach_m = 1e30;
+    cone_light found = trace_cone(c, 1.0);
+    vec3 light = found.light * voxels.anchor.w;
+#if ENVIRONMENT_LIGHT
+    light += environment_specular(direction, roughness) * found.transmittance;
+#endif
+    return light;
+}
