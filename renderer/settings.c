@@ -71,8 +71,8 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                       .shadow_taps = 16,
                       .shadow_cascades = 2,
                       .voxel_resolution = VOXEL_RESOLUTION_64,
-                      .cone_set = CONE_SET_16,
-                      .cone_step = 0.75f,
+                      .cone_set = CONE_SET_9,
+                      .cone_step = 1.0f,
                       .gather_mode = GATHER_HALF,
                       .soft_shadows = true,
                       .specular_roughness = 0.5f,
@@ -84,10 +84,10 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                        .voxel_resolution = VOXEL_RESOLUTION_128,
                        .cone_set = CONE_SET_16,
                        .cone_step = 0.5f,
-                       .gather_mode = GATHER_PIXEL,
+                       .gather_mode = GATHER_CACHE,
                        .soft_shadows = true,
                        .specular_roughness = 0.7f,
-                       .still_frames = 8},
+                       .still_frames = 1},
 };
 
 void render_settings_init(struct render_settings *settings)

@@ -52,7 +52,9 @@ float soft_visibility(float hard, vec3 position, vec3 normal, vec3 to_light, flo
     c.reach_m = (distance_m - (voxels.pixel_march.y + 2.0) * voxel) / (1.0 + 3.0 * c.tangent);
     cone_light found = trace_cone(c, 1.0);
     float penumbra = radius_m * found.hit_m / max(distance_m - found.hit_m, 1e-6);
-    float share = found.transmittance < 0.99 ? smoothstep(0.5, 2.0, penumbra / voxel) : 0.0;
+    float share = found.transmittance < 0.99 ? smoothstep(1.0, 3.0, penumbra / voxel) : 0.0;
+    // Nor are the steps that voxels make of the surface itself occluders.
+    share *= smoothstep(1.0, 3.0, dot(to_light, normal) * found.hit_m / voxel);
     return mix(hard, found.transmittance, share);
 }
 #endif
