@@ -36,9 +36,9 @@ struct voxel_instance {
 
 // How far light has come on its way to being converged; see gi/light.c.
 struct voxel_light_state {
-    bool relight;       // voxels must be lit anew
-    bool relight_direct;    // by lamps, too, rather than by the cache alone
-    bool start_pending; // the next frame begins a generation of the cache
+    bool relight;        // voxels must be lit anew
+    bool relight_direct; // by lamps, too, rather than by the cache alone
+    bool start_pending;  // the next frame begins a generation of the cache
     bool converged;
     bool unlimited;        // bounces
     bool everything_asked; // voxels need all faces, not only those that pixels see
@@ -58,7 +58,8 @@ struct voxel_volume {
     struct gpu *gpu;
     struct voxel_volume_params params;
     uint32_t level_count;
-    uint32_t lit_levels; // levels that have cells of their own: 1 for a grid; then come mips of the last
+    uint32_t
+        lit_levels; // levels that have cells of their own: 1 for a grid; then come mips of the last
     uint32_t face_count;
     double anchor[3];
     float bounds_min[3]; // of the scene that the voxels were laid out for
@@ -99,7 +100,7 @@ struct voxel_volume {
     uint64_t geometry_seen;
     uint64_t transforms_seen;
     uint64_t surfaces_hash;
-    uint32_t epoch; // counts changes of geometry, modulo 256
+    uint32_t epoch;    // counts changes of geometry, modulo 256
     uint32_t *scratch; // chunks on their way to the GPU
     size_t scratch_words;
 

@@ -38,8 +38,7 @@ static bool get_programs(const struct frame *frame, const struct pass *pass,
         {&programs->large, "voxel/voxelize.comp", "LARGE 1\n"},
         {&programs->cells, "voxel/voxel_cells.comp", ""},
         {&programs->mend, "voxel/voxel_lists.comp", "STAGE 0\n"},
-        {&programs->list, "voxel/voxel_lists.comp",
-         "STAGE 1\n"},
+        {&programs->list, "voxel/voxel_lists.comp", "STAGE 1\n"},
         {&programs->arguments, "voxel/voxel_lists.comp", "STAGE 2\n"},
         {&programs->tiles, "voxel/voxel_lists.comp", "STAGE 3\n"},
     };
@@ -62,6 +61,9 @@ static void empty_regions(const struct frame *frame, const struct voxelize_progr
         gpu_texture_clear(volume->radiance);
         gpu_barrier(frame->gpu);
     } else {
+        // Lighting may have taken more face records than were free.
+        gpu_dispatch(frame->gpu, programs->mend, 1, 1, 1);
+        gpu_barrier(frame->gpu);
         dispatch_rows(frame, programs->clear,
                       (volume->region_voxels + LINEAR_GROUP - 1) / LINEAR_GROUP);
     }
