@@ -61,6 +61,9 @@ static void empty_regions(const struct frame *frame, const struct voxelize_progr
         gpu_texture_clear(volume->radiance);
         gpu_barrier(frame->gpu);
     } else {
+        // Lighting may have taken more face records than were free.
+        gpu_dispatch(frame->gpu, programs->mend, 1, 1, 1);
+        gpu_barrier(frame->gpu);
         dispatch_rows(frame, programs->clear,
                       (volume->region_voxels + LINEAR_GROUP - 1) / LINEAR_GROUP);
     }

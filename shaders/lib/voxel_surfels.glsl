@@ -86,7 +86,10 @@ void add_fragment(uint surfel, voxel_fragment f)
 {
     uint word = surfel * SURFEL_WORDS;
     atomicOr(surfels[word + SURFEL_MASK], f.mask);
-    atomicAdd(surfels[word + SURFEL_WEIGHT], f.weight);
+    if (atomicAdd(surfels[word + SURFEL_WEIGHT], f.weight) >= SURFEL_WEIGHT_MAX) {
+        atomicAdd(surfels[word + SURFEL_WEIGHT], uint(-int(f.weight)));
+        return;
+    }
     add3(word + SURFEL_NORMAL, f.normal, 127.0, f.weight);
     add3(word + SURFEL_PLACE, f.place, 255.0, f.weight);
     atomicAdd(surfels[word + SURFEL_OPACITY], uint(round(f.opacity * 255.0)) * f.weight);

@@ -55,6 +55,9 @@
 #define SURFEL_COLOR        11u  // 3 sums of weight * base colour texture * 255
 #define SURFEL_EMISSION     14u  // 3 sums of weight * emissive texture * 255
 #define SURFEL_WEIGHT_SCALE 64.0 // per square of the voxel's edge; at least 1 a triangle
+// Beyond this weight no more is added: 255 times as much fits into 31 bits. More than 70,000
+// triangles of one surface that cross a voxel all over make up the mean by then.
+#define SURFEL_WEIGHT_MAX 8000000u
 
 // Words of the counters. Lists follow, COUNTER_LIST_WORDS each: groups x, y, z of an indirect
 // dispatch and the number of entries.

@@ -11,6 +11,18 @@ layout(std430, binding = BIND_SURFELS) readonly buffer surfel_storage
     uint surfels[];
 };
 
+// Nothing else empties mips above a voxel that was the last in them; the others are filtered anew.
+void clear_mips(uint level, ivec3 voxel)
+{
+    if (level + 1u != voxels.shape.x)
+        return;
+    for (uint mip = level + 1u; mip < voxels.counts.x; mip++) {
+        ivec3 address = slot_address(mip, voxel_slot(mip, voxel >> int(mip - level)));
+        for (uint face = 0u; face < voxels.counts.y; face++)
+            store_voxel_face(mip, address, face, vec4(0.0));
+    }
+}
+
 void main()
 {
     uint level;
@@ -39,4 +51,5 @@ void main()
     ivec3 address = slot_address(level, slot);
     for (uint face = 0u; face < voxels.counts.y; face++)
         store_voxel_face(level, address, face, vec4(0.0));
+    clear_mips(level, voxel);
 }

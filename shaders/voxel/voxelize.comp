@@ -115,6 +115,23 @@ bool begin_walk(uvec4 chunk, uint triangle_number, out walk w)
     return all(lessThanEqual(w.low, w.high));
 }
 
+#if VOXEL_COLORS && COLOR_CLASSES > 0
+// As wide as the longer side of the voxel's footprint both ways: one sample then does, whatever the
+// quality of the frame that happens to voxelize.
+void square_footprint(inout texture_point point, UV_VECTOR dx, UV_VECTOR dy)
+{
+    float first = sqrt(max(dot(dx.xy, dx.xy), dot(dy.xy, dy.xy)));
+#if SECOND_UV_SET
+    float second = sqrt(max(dot(dx.zw, dx.zw), dot(dy.zw, dy.zw)));
+    point.dx = vec4(first, 0.0, second, 0.0);
+    point.dy = vec4(0.0, first, 0.0, second);
+#else
+    point.dx = vec2(first, 0.0);
+    point.dy = vec2(0.0, first);
+#endif
+}
+#endif
+
 #if VOXEL_COLORS
 // Textures at the level that fits the voxel, at a place on the triangle.
 void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
@@ -140,8 +157,8 @@ void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
         vec2 e2 = vec2(w.t.v[2].xy - w.t.v[0].xy);
         float inverse = 1.0 / float(w.t.normal.z);
         point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
-        point.dx = ((uv[1] - uv[0]) * e2.y - (uv[2] - uv[0]) * e1.y) * inverse;
-        point.dy = ((uv[2] - uv[0]) * e1.x - (uv[1] - uv[0]) * e2.x) * inverse;
+        square_footprint(point, ((uv[1] - uv[0]) * e2.y - (uv[2] - uv[0]) * e1.y) * inverse,
+                         ((uv[2] - uv[0]) * e1.x - (uv[1] - uv[0]) * e2.x) * inverse);
         for (uint slots = material.info.z & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
             uint slot = uint(findLSB(slots));
             vec4 texel = sample_color(material.info.y + slot, point);

@@ -1,0 +1,63 @@
+// What the tests of voxels share: a volume filled without drawing a picture, what lies in its
+// voxels as sorted records, and scenes that place triangles on voxels exactly.
+#ifndef VOXCAST_TESTS_GPU_SUPPORT_VOXELS_H
+#define VOXCAST_TESTS_GPU_SUPPORT_VOXELS_H
+
+#include "renderer/gi/volume.h"
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+// A context, a scene on the GPU and what a frame needs to run the voxel passes. One at a time.
+struct voxel_rig {
+    struct gpu *gpu;
+    struct view *view;
+    struct resident *resident;
+    struct frame_params params;
+};
+
+// Fail the test where they cannot do their work. The scene stays the caller's.
+void voxel_rig_init(struct voxel_rig *rig, struct scene *scene);
+void voxel_rig_finish(struct voxel_rig *rig);
+
+struct voxel_volume *voxel_rig_volume(struct voxel_rig *rig, enum gi_method method, uint32_t edge,
+                                      uint32_t clip_levels);
+
+// Brings the volume up to date for a camera at `eye`; voxelizes where anything has changed.
+void voxel_rig_voxelize(struct voxel_rig *rig, struct voxel_volume *volume, const float eye[3]);
+
+// Lights all voxels by what they emit, and filters.
+void voxel_rig_light(struct voxel_rig *rig, struct voxel_volume *volume);
+
+// What one surface has in one voxel.
+struct voxel_record {
+    int32_t voxel[3];
+    uint32_t level;
+    uint32_t words[SURFEL_WORDS - 1]; // of the surfel, from its key on
+};
+
+// All of a volume's surfels, sorted by level, voxel and key; free() the records.
+struct voxel_records {
+    size_t count;
+    struct voxel_record *records;
+};
+struct voxel_records voxel_read_records(const struct voxel_volume *volume);
+
+// How many records are not the same in both; prints the first few.
+size_t voxel_count_differences(const struct voxel_records *a, const struct voxel_records *b);
+
+uint32_t voxel_record_word(const struct voxel_record *record, uint32_t surfel_word);
+
+// A scene whose bounds are -30 to 30 m, given by two specks in their corners. With 64 voxels along
+// an edge those of the coarsest level are 1 m wide, and the anchor is known.
+struct scene *voxel_scene_create(void);
+float voxel_scene_anchor(void);
+
+// Adds a mesh of its own for `count` triangles (9 floats each) and a node for it. `colors`: one
+// (RGB) for each triangle, or NULL for white.
+uint32_t voxel_scene_add(struct scene *scene, const float *triangles, uint32_t count,
+                         const float *colors, uint32_t material);
+
+// Repeatable: a number in [0, 1).
+double voxel_random(uint64_t *state);
+
+#endif
