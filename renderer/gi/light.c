@@ -10,9 +10,9 @@
 #define MIN_BUDGET      256.0
 #define MAX_BUDGET      1e6
 #define GPU_BUDGET      131072u
-// Light has settled when no voxel face changes by more than this share of its light in a
-// generation.
-#define SETTLED_CHANGE  0.02f
+// Light has settled when what is still to come, a geometric series, is less than this share of any
+// voxel face's light.
+#define SETTLED_REST    0.008f
 #define MAX_GENERATIONS 48u
 // Pixels ask for faces in a pattern of so many frames: the cache is complete when nothing was asked
 // for in all of them.
@@ -86,6 +86,8 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->relight_direct = true;
         volume->lit_key = params->key;
         light->bounce = 0;
+        light->change = 0.0f;
+        light->rest = 1.0f;
         light->converged = false;
         light->start_pending = true;
         light->relight = true;
@@ -133,11 +135,13 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     float change, peak;
     memcpy(&change, &report->change_bits, sizeof(change));
     memcpy(&peak, &report->peak_bits, sizeof(peak));
+    float ratio = light->change > 0.0f ? fminf(change / light->change, 0.95f) : 0.95f;
     light->change = change;
+    light->rest = change * ratio / (1.0f - ratio);
     light->peak = peak;
     light->bounce++;
     light->converged =
-        light->bounce >= light->needed || (light->unlimited && light->change < SETTLED_CHANGE);
+        light->bounce >= light->needed || (light->unlimited && light->rest < SETTLED_REST);
     light->start_pending = !light->converged;
     light->version++;
     // Cones that gather for pixels shall see the last bounce, too.
@@ -151,7 +155,7 @@ float voxel_light_convergence(const struct voxel_volume *volume)
         return 1.0f;
     if (light->bounce == 0)
         return 0.0f;
-    float left = light->unlimited ? fminf(light->change, 1.0f)
+    float left = light->unlimited ? fminf(light->rest, 1.0f)
                                   : 1.0f - (float)light->bounce / (float)light->needed;
     return 0.99f * (1.0f - left);
 }

@@ -51,6 +51,7 @@ struct voxel_light_state {
     uint32_t next_level;   // to relight, where one level is relit a frame
     uint32_t version;      // counts changes of the radiance that cones see
     float change;          // in the generation that ended last, relative to the brightest face
+    float rest;            // relative change that is still to come
     float peak;            // brightest face then, over the scale
     double entry_ms;       // measured cost of a face
 };
