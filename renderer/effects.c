@@ -65,8 +65,9 @@ static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t 
 // Effects of global illumination. Returns those that the settings allow: the rest stay off even
 // where everything is forced.
 static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *resident,
-                              const struct render_settings *settings)
+                              const struct frame_params *params)
 {
+    const struct render_settings *settings = &params->settings;
     const struct resident_counts *counts = &resident->counts;
     static const enum effect all[] = {
         EFFECT_INDIRECT_DIFFUSE,  EFFECT_BOUNCE,       EFFECT_INDIRECT_SPECULAR,
@@ -79,16 +80,17 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
     }
     bool environment = settings->environment_light && has_environment(resident);
     bool source = counts->lights > 0 || counts->emissive_materials > 0 || environment;
+    bool reflected = source && counts->reflective_materials > 0;
     const struct {
         enum effect effect;
         bool allowed, on;
         const char *because, *missing;
     } rules[] = {
-        {EFFECT_INDIRECT_DIFFUSE, true, source && counts->reflective_materials > 0,
-         "light meets surfaces that reflect",
+        {EFFECT_INDIRECT_DIFFUSE, true, reflected || debug_view_needs_voxels(params->debug_view),
+         reflected ? "light meets surfaces that reflect" : "the debug view shows voxels",
          source ? "every surface is black or unlit" : "nothing in the scene gives light"},
-        {EFFECT_BOUNCE, settings->bounces != 1, source && counts->reflective_materials > 0,
-         "surfaces reflect what they receive", "no surface reflects light"},
+        {EFFECT_BOUNCE, settings->bounces != 1, reflected, "surfaces reflect what they receive",
+         "no surface reflects light"},
         {EFFECT_INDIRECT_SPECULAR, settings->indirect_specular,
          source && counts->specular_materials > 0, "a material reflects like a gloss",
          "no specular material in the scene"},
@@ -96,8 +98,8 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
          "a material transmits light", "no transmissive material in the scene"},
         {EFFECT_SOFT_SHADOWS, settings->soft_shadows && settings->shadows, counts->sized_lights > 0,
          "a light has a size", "no light has a size"},
-        {EFFECT_AMBIENT_OCCLUSION, settings->ambient_occlusion,
-         source && counts->reflective_materials > 0, "asked for", "no indirect light to darken"},
+        {EFFECT_AMBIENT_OCCLUSION, settings->ambient_occlusion, reflected, "asked for",
+         "no indirect light to darken"},
         {EFFECT_ENVIRONMENT_LIGHT, settings->environment_light, environment,
          "the environment lights surfaces", "no environment in the scene"},
     };
@@ -160,7 +162,7 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
            automatic ? "exposure is automatic" : "exposure is fixed");
     uint32_t chosen = EFFECT_BIT(EFFECT_AUTO_EXPOSURE) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                       ((1u << EFFECT_COUNT) - EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE));
-    uint32_t allowed = plan_indirect(plan, resident, settings) | ~chosen;
+    uint32_t allowed = plan_indirect(plan, resident, params) | ~chosen;
     if (settings->force_all_effects)
         for (int i = 0; i < EFFECT_COUNT; i++)
             if ((allowed & EFFECT_BIT(i)) && !(plan->bits & EFFECT_BIT(i)))

@@ -201,8 +201,8 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     struct voxel_block *block = &volume->uniforms;
     bool automatic = settings->cone_set == CONE_SET_AUTO;
     bool own_step = settings->cone_step > 0.0f;
-    fill_march(volume, cache_cones_of(settings),
-               own_step ? settings->cone_step : CACHE_STEP, block->march, block->cones);
+    fill_march(volume, cache_cones_of(settings), own_step ? settings->cone_step : CACHE_STEP,
+               block->march, block->cones);
     fill_march(volume, automatic ? frame->quality->cone_set : settings->cone_set,
                own_step ? settings->cone_step : frame->quality->cone_step, block->pixel_march,
                block->pixel_cones);
@@ -214,6 +214,14 @@ static enum gather_mode gather_mode_of(const struct frame *frame)
 {
     enum gather_mode chosen = frame->params->settings.gather_mode;
     return chosen == GATHER_AUTO ? frame->quality->gather_mode : chosen;
+}
+
+// Whether pixels read the cache rather than gather the last bounce themselves.
+static bool frame_shows_cache(const struct frame *frame)
+{
+    enum debug_view view = frame->params->debug_view;
+    return frame->gather == GATHER_CACHE || view == DEBUG_VIEW_VOXEL_IRRADIANCE ||
+           view == DEBUG_VIEW_AMBIENT_OCCLUSION || view == DEBUG_VIEW_CACHE_AGE;
 }
 
 bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
@@ -239,7 +247,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         .key = light_key(frame, volume),
         .bounces = settings->bounces,
         .feedback = frame_has(frame, EFFECT_BOUNCE),
-        .cache_shown = frame->gather == GATHER_CACHE,
+        .cache_shown = frame_shows_cache(frame),
         .camera_moved = frame->visibility_changed,
         .software = gpu_get_info(gi->gpu)->software,
         .levels_per_frame = settings->levels_per_frame,

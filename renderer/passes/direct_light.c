@@ -6,7 +6,7 @@ static const char *direct_light_skip_reason(const struct frame *frame)
 {
     if (!frame_has(frame, EFFECT_PUNCTUAL_LIGHTS) && !frame_has(frame, EFFECT_AREA_LIGHTS))
         return "no light in the scene";
-    return frame_shows_light(frame) ? NULL : "the debug view shows no light";
+    return frame_lights_pixels(frame) ? NULL : "the debug view shows no light";
 }
 
 static bool direct_light_run(struct frame *frame, const struct pass *pass, struct error *out_error)

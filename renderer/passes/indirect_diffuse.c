@@ -7,14 +7,17 @@ static const char *indirect_diffuse_skip_reason(const struct frame *frame)
 {
     if (!frame->volume || !frame_has(frame, EFFECT_INDIRECT_DIFFUSE))
         return frame->plan.reasons[EFFECT_INDIRECT_DIFFUSE];
-    return frame->params->debug_view == DEBUG_VIEW_FINAL ? NULL : "the debug view shows none";
+    bool shown = frame->params->debug_view == DEBUG_VIEW_FINAL ||
+                 frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;
+    return shown ? NULL : "the debug view shows none";
 }
 
 static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
                                  struct error *out_error)
 {
-    const struct gpu_program *program =
-        voxel_program(frame, pass, "gi/indirect_diffuse.comp", "", out_error);
+    bool alone = frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;
+    const struct gpu_program *program = voxel_program(frame, pass, "gi/indirect_diffuse.comp",
+                                                      alone ? "ALONE 1\n" : "ALONE 0\n", out_error);
     if (!program)
         return false;
     uint32_t pixels = 2 * GROUP_EDGE;

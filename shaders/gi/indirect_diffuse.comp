@@ -1,4 +1,5 @@
-// Adds indirect diffuse light. In: G-buffer, irradiance cache. Out: radiance in cd/m^2.
+// Adds indirect diffuse light, or writes it where it is shown ALONE. In: G-buffer, irradiance cache.
+// Out: radiance in cd/m^2.
 //
 // An invocation takes 2x2 pixels: irradiance changes little between them, so that it is looked up
 // once and again only for pixels that lie on another surface.
@@ -24,6 +25,10 @@ void main()
         uvec2 pixel = first + uvec2(i & 1u, i >> 1);
         if (any(greaterThanEqual(pixel, frame.size.xy)))
             continue;
+        uint at = pixel_index(pixel);
+#if ALONE
+        radiance[at] = vec4(0.0, 0.0, 0.0, 1.0);
+#endif
         surface s = gbuffer_load(pixel);
         if (s.shading >= SHADE_UNLIT)
             continue;
@@ -35,7 +40,6 @@ void main()
             known_normal = s.geometric_normal;
             known_position = s.position;
         }
-        uint at = pixel_index(pixel);
         radiance[at].rgb += reflect_irradiance(s, known);
     }
 }
