@@ -125,7 +125,7 @@ void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
     base = fetch4(w.words.x + VERTEX_COLOR) * weights.x + fetch4(w.words.y + VERTEX_COLOR) * weights.y +
            fetch4(w.words.z + VERTEX_COLOR) * weights.z;
 #endif
-#if TEXTURES && COLOR_CLASSES > 0
+#if COLOR_CLASSES > 0
     if ((material.info.z & COLOR_TEXTURE_SLOTS) != 0u) {
         texture_point point;
         point.level_dither = 0.0;
