@@ -247,10 +247,9 @@ bool resident_upload_environment(struct resident *resident)
 {
     const struct scene_environment *environment = &resident->scene->environment;
     vec4 vectors[ENVIRONMENT_VECTORS + ENVIRONMENT_BRDF_EDGE * ENVIRONMENT_BRDF_EDGE] = {{0}};
-    if (environment->type != SCENE_ENVIRONMENT_NONE) {
+    if (environment->type != SCENE_ENVIRONMENT_NONE)
         project_harmonics(environment, vectors);
-        tabulate_brdf(vectors + ENVIRONMENT_VECTORS);
-    }
+    tabulate_brdf(vectors + ENVIRONMENT_VECTORS); // indirect light needs it, too
     vectors[9][0] = (float)environment->type;
     vectors[9][1] = (float)LEVEL_COUNT;
     bool gradient = environment->type == SCENE_ENVIRONMENT_GRADIENT;
