@@ -80,16 +80,17 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
     }
     bool environment = settings->environment_light && has_environment(resident);
     bool source = counts->lights > 0 || counts->emissive_materials > 0 || environment;
+    bool reflected = source && counts->reflective_materials > 0;
     const struct {
         enum effect effect;
         bool allowed, on;
         const char *because, *missing;
     } rules[] = {
-        {EFFECT_INDIRECT_DIFFUSE, true, source && counts->reflective_materials > 0,
-         "light meets surfaces that reflect",
+        {EFFECT_INDIRECT_DIFFUSE, true, reflected || debug_view_needs_voxels(params->debug_view),
+         reflected ? "light meets surfaces that reflect" : "the debug view shows voxels",
          source ? "every surface is black or unlit" : "nothing in the scene gives light"},
-        {EFFECT_BOUNCE, settings->bounces != 1, source && counts->reflective_materials > 0,
-         "surfaces reflect what they receive", "no surface reflects light"},
+        {EFFECT_BOUNCE, settings->bounces != 1, reflected, "surfaces reflect what they receive",
+         "no surface reflects light"},
         {EFFECT_INDIRECT_SPECULAR, settings->indirect_specular,
          source && counts->specular_materials > 0, "a material reflects like a gloss",
          "no specular material in the scene"},
@@ -98,9 +99,10 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
         {EFFECT_SOFT_SHADOWS,
          settings->soft_shadows && settings->shadows &&
              quality_levels[params->quality].soft_shadows,
-         counts->sized_lights > 0, "a light has a size", "no light has a size"},
-        {EFFECT_AMBIENT_OCCLUSION, settings->ambient_occlusion,
-         source && counts->reflective_materials > 0, "asked for", "no indirect light to darken"},
+         counts->sized_lights > 0 && counts->lit_materials > 0, "a light has a size",
+         counts->lit_materials > 0 ? "no light has a size" : "every surface is unlit"},
+        {EFFECT_AMBIENT_OCCLUSION, settings->ambient_occlusion, reflected, "asked for",
+         "no indirect light to darken"},
         {EFFECT_ENVIRONMENT_LIGHT, settings->environment_light, environment,
          "the environment lights surfaces", "no environment in the scene"},
     };

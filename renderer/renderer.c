@@ -187,8 +187,9 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
                    (resident->counts.lights + 31) / 32, frame->view->cascade_count},
            sizeof(uvec4));
     memcpy(block->options,
-           (uvec4){(uint32_t)params->debug_view, 0, frame->quality->shadow_taps,
-                   (uint32_t)settings->tonemap},
+           (uvec4){(uint32_t)params->debug_view | frame_debug_level(frame) << 8 |
+                       (uint32_t)params->debug_face << 16,
+                   0, frame->quality->shadow_taps, (uint32_t)settings->tonemap},
            sizeof(uvec4));
     bool fixed = settings->exposure_mode == EXPOSURE_FIXED;
     block->display[0] = fixed ? exp2f(settings->exposure_ev) : 0.0f;
@@ -200,6 +201,7 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->textures[0] = frame->quality->texture_anisotropy;
     block->textures[2] = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
     block->textures[1] = resident->diagonal_m * SHADOW_NEAR_FRACTION;
+    block->textures[3] = frame->quality->specular_roughness;
 }
 
 static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)

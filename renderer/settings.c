@@ -122,3 +122,8 @@ bool render_settings_equal(const struct render_settings *a, const struct render_
            a->gamma == b->gamma && a->shading_model == b->shading_model &&
            a->shadows == b->shadows && a->force_all_effects == b->force_all_effects;
 }
+
+bool debug_view_needs_voxels(enum debug_view view)
+{
+    return view >= DEBUG_VIEW_VOXEL_OPACITY && view <= DEBUG_VIEW_CACHE_AGE;
+}

@@ -69,16 +69,17 @@ enum debug_view {
     DEBUG_VIEW_IDS,
     DEBUG_VIEW_LIGHTS_PER_TILE,
     DEBUG_VIEW_SHADOW_CASCADES,
-    DEBUG_VIEW_VOXEL_OPACITY, // these five: one level and face, ray-marched
+    DEBUG_VIEW_VOXEL_OPACITY, // these five: one level and face, ray-marched; dimmed where another
+                              // face stands in, since the voxel has no surface that way
     DEBUG_VIEW_VOXEL_ALBEDO,
     DEBUG_VIEW_VOXEL_NORMAL,
     DEBUG_VIEW_VOXEL_RADIANCE,
     DEBUG_VIEW_VOXEL_IRRADIANCE,
     DEBUG_VIEW_INDIRECT_DIFFUSE,
     DEBUG_VIEW_INDIRECT_SPECULAR,
-    DEBUG_VIEW_AMBIENT_OCCLUSION,
-    DEBUG_VIEW_CACHE_AGE,
-    DEBUG_VIEW_TILE_CLASSES,
+    DEBUG_VIEW_AMBIENT_OCCLUSION, // openness: white sees no occluder nearby
+    DEBUG_VIEW_CACHE_AGE,         // colours as in shaders/debug/cache_view.comp
+    DEBUG_VIEW_TILE_CLASSES,      // colours as in shaders/debug/tile_classes.comp
     DEBUG_VIEW_COUNT
 };
 
@@ -162,5 +163,8 @@ struct view_camera {
 
 void render_settings_init(struct render_settings *settings);
 bool render_settings_equal(const struct render_settings *a, const struct render_settings *b);
+
+// Whether a view shows what only global illumination has.
+bool debug_view_needs_voxels(enum debug_view view);
 
 #endif

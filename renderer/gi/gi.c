@@ -247,6 +247,14 @@ static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
     block->settle[1] = (float)view->still_count;
 }
 
+// Whether pixels read the cache rather than gather the last bounce themselves.
+static bool frame_shows_cache(const struct frame *frame)
+{
+    enum debug_view view = frame->params->debug_view;
+    return gi_gather_mode(frame) == GATHER_CACHE || view == DEBUG_VIEW_VOXEL_IRRADIANCE ||
+           view == DEBUG_VIEW_AMBIENT_OCCLUSION || view == DEBUG_VIEW_CACHE_AGE;
+}
+
 bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 {
     frame->volume = NULL;
@@ -270,7 +278,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         .key = light_key(frame, volume),
         .bounces = settings->bounces,
         .feedback = frame_has(frame, EFFECT_BOUNCE),
-        .cache_shown = gi_gather_mode(frame) == GATHER_CACHE,
+        .cache_shown = frame_shows_cache(frame),
         .camera_moved = frame->visibility_changed,
         .software = gpu_get_info(gi->gpu)->software,
         .levels_per_frame = settings->levels_per_frame,

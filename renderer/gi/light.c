@@ -102,6 +102,10 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->converged = false;
         light->quiet_frames = 0;
     }
+    if (light->converged && !light->unlimited && light->bounce < light->needed) {
+        light->converged = false; // a view has come that shows one bounce more of the cache
+        light->start_pending = true;
+    }
     if (light->bounce >= light->needed && light->needed == 0)
         light->converged = true; // gathering pixels need no cache
     if (!light->converged && light->start_pending && !(light->relight && light->next_level != 0))

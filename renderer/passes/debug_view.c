@@ -1,16 +1,95 @@
-// Pictures of what the renderer works with, in place of light.
+// Pictures of what the renderer works with, in place of the scene as it looks.
+#include <stdio.h>
+
+#include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
 
+uint32_t frame_debug_level(const struct frame *frame)
+{
+    uint32_t wanted = frame->params->debug_level;
+    uint32_t count = frame->volume ? frame->volume->level_count : 1;
+    return wanted < count ? wanted : count - 1;
+}
+
+// Levels beyond are mips, which hold light and opacity alone.
+static bool debug_level_has_cells(const struct frame *frame)
+{
+    return frame_debug_level(frame) < frame->volume->lit_levels;
+}
+
+bool frame_shows_light(const struct frame *frame)
+{
+    switch (frame->params->debug_view) {
+    case DEBUG_VIEW_FINAL:
+    case DEBUG_VIEW_DIRECT:
+        return true;
+    case DEBUG_VIEW_VOXEL_RADIANCE:
+    case DEBUG_VIEW_INDIRECT_DIFFUSE:
+    case DEBUG_VIEW_INDIRECT_SPECULAR:
+        return frame->volume != NULL;
+    case DEBUG_VIEW_VOXEL_IRRADIANCE:
+        return frame->volume && debug_level_has_cells(frame);
+    default:
+        return false;
+    }
+}
+
+const char *frame_blank_reason(const struct frame *frame)
+{
+    if (!debug_view_needs_voxels(frame->params->debug_view) || frame->volume)
+        return NULL;
+    return "plain grey: without global illumination there are no voxels to show";
+}
+
+// The pass that makes the picture by itself, since the view is of its light alone; NULL for none.
+static const struct pass *drawing_pass(const struct frame *frame)
+{
+    return frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE ? &indirect_diffuse_pass : NULL;
+}
+
 static const char *debug_view_skip_reason(const struct frame *frame)
 {
-    return !frame_shows_light(frame) ? NULL : "no debug view chosen";
+    if (frame_lights_pixels(frame))
+        return "no debug view chosen";
+    const char *blank = frame_blank_reason(frame);
+    if (blank)
+        return blank;
+    const struct pass *other = drawing_pass(frame);
+    return other && !other->skip_reason(frame) ? "the pass of this light draws it" : NULL;
+}
+
+// Each kind of view has a shader of its own, so that none pays for another's code.
+static const struct gpu_program *program_of_view(const struct frame *frame, const struct pass *pass,
+                                                 struct error *out_error)
+{
+    enum debug_view view = frame->params->debug_view;
+    char extra[64];
+    switch (view) {
+    case DEBUG_VIEW_VOXEL_OPACITY:
+    case DEBUG_VIEW_VOXEL_ALBEDO:
+    case DEBUG_VIEW_VOXEL_NORMAL:
+    case DEBUG_VIEW_VOXEL_RADIANCE:
+    case DEBUG_VIEW_VOXEL_IRRADIANCE:
+        snprintf(extra, sizeof(extra), "SHOW %d\nCELLS %d\n",
+                 (int)view - (int)DEBUG_VIEW_VOXEL_OPACITY, debug_level_has_cells(frame));
+        return voxel_program(frame, pass, "debug/voxel_view.comp", extra, out_error);
+    case DEBUG_VIEW_AMBIENT_OCCLUSION:
+    case DEBUG_VIEW_CACHE_AGE:
+        snprintf(extra, sizeof(extra), "AGE %d\nCLIP_LEVELS %d\n", view == DEBUG_VIEW_CACHE_AGE,
+                 frame_has(frame, EFFECT_CLIP_LEVELS));
+        return voxel_program(frame, pass, "debug/cache_view.comp", extra, out_error);
+    case DEBUG_VIEW_TILE_CLASSES:
+        snprintf(extra, sizeof(extra), "LAYERS %d\n", !transparency_pass.skip_reason(frame));
+        return pass_program(frame, pass, "debug/tile_classes.comp", extra, out_error);
+    default:
+        return pass_program(frame, pass, "debug/debug_view.comp", "", out_error);
+    }
 }
 
 static bool debug_view_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
-    const struct gpu_program *program =
-        pass_program(frame, pass, "debug/debug_view.comp", "", out_error);
+    const struct gpu_program *program = program_of_view(frame, pass, out_error);
     if (!program)
         return false;
     pass_dispatch_pixels(frame, program);
@@ -21,11 +100,15 @@ const struct pass debug_view_pass = {
     .name = "debug_view",
     .effects_used = EFFECT_BIT(EFFECT_FLAT_SHADOWS) | EFFECT_BIT(EFFECT_CUBE_SHADOWS) |
                     EFFECT_BIT(EFFECT_LIGHT_TILES),
-    .use_count = 5,
+    .use_count = 9,
     .uses = {{RESOURCE_IDS, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},
              {RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_LIGHT_MASKS, ACCESS_READ},
+             {RESOURCE_FRAGMENTS, ACCESS_READ},
+             {RESOURCE_VOXELS, ACCESS_READ},
+             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
+             {RESOURCE_IRRADIANCE, ACCESS_READ},
              {RESOURCE_RADIANCE, ACCESS_WRITE}},
     .skip_reason = debug_view_skip_reason,
     .run = debug_view_run,

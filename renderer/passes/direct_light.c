@@ -8,7 +8,7 @@ static const char *direct_light_skip_reason(const struct frame *frame)
         return "no light in the scene";
     if (frame->resident->counts.lit_materials == 0 && !frame->params->settings.force_all_effects)
         return "every surface is unlit";
-    return frame_shows_light(frame) ? NULL : "the debug view shows no light";
+    return frame_lights_pixels(frame) ? NULL : "the debug view shows no light";
 }
 
 static bool direct_light_run(struct frame *frame, const struct pass *pass, struct error *out_error)

@@ -4,7 +4,7 @@
 
 static const char *emission_skip_reason(const struct frame *frame)
 {
-    if (!frame_shows_light(frame))
+    if (!frame_lights_pixels(frame))
         return "the debug view shows no light";
     bool other = !environment_pass.skip_reason(frame) || !direct_light_pass.skip_reason(frame);
     return other ? "another light pass writes it" : NULL;

@@ -1,4 +1,6 @@
 // Indirect diffuse light: from the irradiance cache, or from cones at pixels.
+#include <stdio.h>
+
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
@@ -7,7 +9,9 @@ static const char *indirect_diffuse_skip_reason(const struct frame *frame)
 {
     if (!frame->volume || !frame_has(frame, EFFECT_INDIRECT_DIFFUSE))
         return frame->view->last_plan.reasons[EFFECT_INDIRECT_DIFFUSE];
-    return frame->params->debug_view == DEBUG_VIEW_FINAL ? NULL : "the debug view shows none";
+    bool shown = frame->params->debug_view == DEBUG_VIEW_FINAL ||
+                 frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;
+    return shown ? NULL : "the debug view shows none";
 }
 
 static bool gather_at_pixels(const struct frame *frame, const struct pass *pass, const char *extra,
@@ -28,9 +32,13 @@ static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
                                  struct error *out_error)
 {
     bool cached = frame->gather == GATHER_CACHE;
-    const char *extra = cached                         ? "GATHER 0\n"
-                        : frame->gather == GATHER_HALF ? "GATHER 2\n"
-                                                       : "GATHER 1\n";
+    bool alone = frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;
+    char extra[32];
+    snprintf(extra, sizeof(extra), "GATHER %d\nALONE %d\n",
+             cached                         ? 0
+             : frame->gather == GATHER_HALF ? 2
+                                            : 1,
+             alone);
     if (!cached && frame->gather_now && !gather_at_pixels(frame, pass, extra, out_error))
         return false;
     const struct gpu_program *program =

@@ -7,7 +7,9 @@ static const char *indirect_specular_skip_reason(const struct frame *frame)
 {
     if (!frame->volume || !frame_has(frame, EFFECT_INDIRECT_SPECULAR))
         return frame->view->last_plan.reasons[EFFECT_INDIRECT_SPECULAR];
-    return frame->params->debug_view == DEBUG_VIEW_FINAL ? NULL : "the debug view shows none";
+    bool shown = frame->params->debug_view == DEBUG_VIEW_FINAL ||
+                 frame->params->debug_view == DEBUG_VIEW_INDIRECT_SPECULAR;
+    return shown ? NULL : "the debug view shows none";
 }
 
 static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
@@ -20,6 +22,8 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
         list ? voxel_program(frame, pass, "gi/indirect_specular.comp", "", out_error) : NULL;
     if (!trace)
         return false;
+    if (frame->params->debug_view == DEBUG_VIEW_INDIRECT_SPECULAR)
+        gpu_buffer_clear(view->radiance);
     static const uint32_t no_groups[4] = {0, 1, 1, 0};
     gpu_buffer_write(view->glossy_tiles, 0, sizeof(no_groups), no_groups);
     gpu_bind_storage(frame->gpu, BIND_TILES, view->glossy_tiles);

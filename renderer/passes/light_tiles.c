@@ -6,7 +6,7 @@ static const char *light_tiles_skip_reason(const struct frame *frame)
 {
     if (!frame_has(frame, EFFECT_LIGHT_TILES))
         return "no light of limited range";
-    if (!frame_shows_light(frame) && frame->params->debug_view != DEBUG_VIEW_LIGHTS_PER_TILE)
+    if (!frame_lights_pixels(frame) && frame->params->debug_view != DEBUG_VIEW_LIGHTS_PER_TILE)
         return "the debug view shows no light";
     return NULL;
 }

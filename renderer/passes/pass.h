@@ -29,7 +29,7 @@ enum resource {
 
 enum access { ACCESS_READ = 1, ACCESS_WRITE = 2, ACCESS_READ_WRITE = 3, ACCESS_HISTORY = 4 };
 
-#define PASS_MAX_USES 8
+#define PASS_MAX_USES 10
 
 struct resource_use {
     enum resource resource;
@@ -62,12 +62,23 @@ static inline bool frame_has(const struct frame *frame, enum effect effect)
     return (frame->plan.bits & EFFECT_BIT(effect)) != 0;
 }
 
-// Debug views of the G-buffer show no light and are displayed as they are.
-static inline bool frame_shows_light(const struct frame *frame)
+// Whether pixels are lit directly: other debug views show something else.
+static inline bool frame_lights_pixels(const struct frame *frame)
 {
     return frame->params->debug_view == DEBUG_VIEW_FINAL ||
            frame->params->debug_view == DEBUG_VIEW_DIRECT;
 }
+
+// Whether the picture is of light, which goes through exposure and tone curve; else it is displayed
+// as it is.
+bool frame_shows_light(const struct frame *frame);
+
+// Why there is nothing that the debug view could show, so that the picture is plain grey; NULL if
+// there is.
+const char *frame_blank_reason(const struct frame *frame);
+
+// The voxel level that a debug view shows.
+uint32_t frame_debug_level(const struct frame *frame);
 
 struct pass {
     const char *name;
@@ -85,7 +96,7 @@ struct pass {
 extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, voxelize_pass,
     voxel_relight_pass, voxel_filter_pass, irradiance_cache_pass, light_tiles_pass,
     environment_pass, direct_light_pass, emission_pass, indirect_diffuse_pass,
-    indirect_specular_pass, transparency_pass, exposure_pass, debug_view_pass, tonemap_pass,
+    indirect_specular_pass, transparency_pass, debug_view_pass, exposure_pass, tonemap_pass,
     readback_pass;
 
 #define PASS_COUNT 18

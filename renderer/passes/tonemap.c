@@ -7,8 +7,9 @@
 static bool tonemap_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
     char extra[64];
-    snprintf(extra, sizeof(extra), "OUTPUT %d\nDISPLAY_READY %d\n", (int)frame->params->output,
-             !frame_shows_light(frame));
+    snprintf(extra, sizeof(extra), "OUTPUT %d\nDISPLAY_READY %d\nBLANK %d\n",
+             (int)frame->params->output, !frame_shows_light(frame),
+             frame_blank_reason(frame) != NULL);
     const struct gpu_program *program =
         pass_program(frame, pass, "post/tonemap.comp", extra, out_error);
     if (!program)

@@ -8,7 +8,8 @@ static const char *transparency_skip_reason(const struct frame *frame)
 {
     if (!(frame->plan.bits & EFFECT_BIT(EFFECT_TRANSPARENCY)))
         return "no transparent material in the scene";
-    if (frame->params->debug_view != DEBUG_VIEW_FINAL)
+    if (frame->params->debug_view != DEBUG_VIEW_FINAL &&
+        frame->params->debug_view != DEBUG_VIEW_TILE_CLASSES)
         return "debug views show opaque surfaces";
     return draw_list_has(&frame->view->draws, DRAW_TRANSPARENT) ? NULL : "none of it is in view";
 }
@@ -38,6 +39,8 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
     draw_list_draw(&view->draws, frame->resident, list, DRAW_TRANSPARENT, true);
     gpu_end_raster(frame->gpu);
     gpu_barrier(frame->gpu);
+    if (frame->params->debug_view == DEBUG_VIEW_TILE_CLASSES)
+        return true; // shows where there are layers, not what they look like
     static const uint32_t no_groups[4] = {0, 1, 1, 0};
     gpu_buffer_write(view->transparent_tiles, 0, sizeof(no_groups), no_groups);
     uint32_t tile_count = ((frame->width + GROUP_EDGE - 1) / GROUP_EDGE) *

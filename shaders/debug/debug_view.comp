@@ -77,7 +77,7 @@ vec3 cascade_color(surface s)
 
 vec3 debug_color(uvec2 pixel, surface s)
 {
-    switch (frame.options.x) {
+    switch (frame.options.x & 0xffu) {
     case VIEW_ALBEDO:
         return transfer(s.base_color);
     case VIEW_NORMAL:
@@ -108,7 +108,7 @@ void main()
         return;
     surface s = gbuffer_load(pixel);
     vec3 color = vec3(0.0);
-    if (frame.options.x == VIEW_LIGHTS_PER_TILE)
+    if ((frame.options.x & 0xffu) == VIEW_LIGHTS_PER_TILE)
         color = heat(float(lights_of_tile(pixel)) / 32.0);
     else if (s.shading != SHADE_BACKGROUND)
         color = debug_color(pixel, s);

@@ -1,4 +1,4 @@
-// Adds indirect diffuse light. In: G-buffer; irradiance cache (GATHER 0), or what pixels have gathered
+// Adds indirect diffuse light, or writes it where it is shown ALONE. In: G-buffer; irradiance cache (GATHER 0), or what pixels have gathered
 // themselves, every one (1) or every fourth (2). Out: radiance in cd/m^2.
 //
 // From the cache, an invocation takes 2x2 pixels: irradiance changes little between them, so that it is
@@ -26,6 +26,10 @@ void main()
         uvec2 pixel = first + uvec2(i & 1u, i >> 1);
         if (any(greaterThanEqual(pixel, frame.size.xy)))
             continue;
+        uint at = pixel_index(pixel);
+#if ALONE
+        radiance[at] = vec4(0.0, 0.0, 0.0, 1.0);
+#endif
         surface s = gbuffer_load(pixel);
         if (s.shading >= SHADE_UNLIT)
             continue;
@@ -37,7 +41,6 @@ void main()
             known_normal = s.geometric_normal;
             known_position = s.position;
         }
-        uint at = pixel_index(pixel);
         radiance[at].rgb += reflect_irradiance(s, known);
     }
 }
@@ -81,10 +84,13 @@ void main()
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.size.xy)))
         return;
+    uint at = pixel_index(pixel);
+#if ALONE
+    radiance[at] = vec4(0.0, 0.0, 0.0, 1.0);
+#endif
     surface s = gbuffer_load(pixel);
     if (s.shading >= SHADE_UNLIT)
         return;
-    uint at = pixel_index(pixel);
 #if GATHER == 2
     vec4 light = gathered_light(s, pixel);
 #else

@@ -2,7 +2,7 @@
 //   0: planar full-range YCbCr 4:2:0 (ITU-R BT.601 as JFIF has it); one invocation does 8 x 2 pixels
 //   1: RGBA8, 2: four floats, linear and unexposed; one invocation does 1 pixel
 // Scales bilinearly where the rendered size is not the shown one. DISPLAY_READY: values are shown
-// as they are (debug views).
+// as they are (debug views). BLANK: plain grey, for debug views that have nothing to show.
 #include "lib/display.glsl"
 #include "lib/radiance.glsl"
 
@@ -20,6 +20,9 @@ layout(std430, binding = BIND_EXPOSURE) readonly buffer exposure_storage
 
 vec3 radiance_at(uvec2 shown)
 {
+#if BLANK
+    return vec3(0.5);
+#endif
     if (frame.size.xy == frame.shown.xy)
         return radiance[shown.y * frame.size.x + shown.x].rgb;
     vec2 size = vec2(frame.size.xy);

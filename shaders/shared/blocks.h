@@ -16,12 +16,14 @@ struct frame_block {
     uvec4 size;       // rendered width, height; light tiles across, down
     uvec4 shown;      // shown width, height; row pitches of Y and of Cb, Cr in bytes
     uvec4 lights;     // lights, area lights, words of a tile's light mask, cascades
-    uvec4 options;    // debug view, shadow view of the sun, shadow taps, tone map
+    uvec4 options;    // debug view | its voxel level << 8 | its voxel face << 16, shadow view of
+                      // the sun, shadow taps, tone map
     vec4 display;     // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, 1 if all
                       // materials are to be Blinn-Phong
     vec4 environment; // intensity, rotation about +Y, unused, unused
     vec4 textures;    // most samples of an anisotropic look-up, near plane of lamps' shadow views,
-                      // 1 if samplers read one level only and want dithering, unused
+                      // 1 if samplers read one level only and want dithering, roughness beyond
+                      // which no surface has a reflection of its own
     // From (u, v, depth) in the sun's view of the scene to each cascade, smallest first.
     vec4 cascade_scales[MAX_CASCADES]; // w: layer of the shadow map
     vec4 cascade_offsets[MAX_CASCADES];

@@ -1,0 +1,77 @@
+// What the irradiance cache knows about the surfaces in sight. In: G-buffer, cells, face records. Out:
+// radiance, as values that are shown without exposure and tone curve.
+//
+// AGE 0: openness, white where nothing near hides the hemisphere. AGE 1: how the record of each
+// pixel's voxel face has come about: green, its light is of this generation and its cones went through
+// geometry as it is; yellow, its light is of an older generation and will be gathered at the hits of
+// its cones; red, its cones went through older geometry; blue, never traced; grey, there is no record.
+// The older the newest request of a pixel for it, the darker.
+#define CELLS_ACCESS readonly
+#include "lib/gbuffer.glsl"
+#include "lib/irradiance_read.glsl"
+#include "lib/radiance.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+#if AGE
+const float REQUEST_FRAMES = 24.0; // as in shaders/gi/cache_select.comp
+const float DARKEST = 0.35;
+
+// The record of the voxel face that a surface lies in, or of another of the voxel's faces; VOXEL_NONE
+// if there is none.
+uint record_at(vec3 world, vec3 normal)
+{
+    vec3 position = world - voxels.anchor.xyz;
+    float room;
+    uint level = cache_level(position, room);
+    if (level >= voxels.shape.x)
+        return VOXEL_NONE;
+    uint cell = find_cell(level, ivec3(floor(position * voxels.levels[level].size.y)));
+    if (cell == VOXEL_NONE)
+        return VOXEL_NONE;
+    uint found = VOXEL_NONE;
+    float most = -2.0;
+    for (uint face = 0u; face < VOXEL_FACES; face++) {
+        uint words = cell_face(cell, face);
+        float alike = dot(normal, face_direction(face));
+        if (words != VOXEL_NONE && faces[words + FACE_NORMAL] != VOXEL_NONE && alike > most) {
+            found = words;
+            most = alike;
+        }
+    }
+    return found;
+}
+
+vec3 cache_color(surface s)
+{
+    uint words = record_at(s.position, s.geometric_normal);
+    if (words == VOXEL_NONE)
+        return vec3(0.25);
+    uint state = faces[words + FACE_STATE];
+    vec3 color = vec3(0.2, 0.8, 0.25);
+    if ((state & 0xffffu) != voxels.cache.x)
+        color = vec3(0.95, 0.8, 0.15);
+    if ((state >> FACE_EPOCH_BIT) != voxels.shape.w)
+        color = vec3(0.9, 0.2, 0.15);
+    if ((state & FACE_MARCHED) == 0u)
+        color = vec3(0.2, 0.35, 0.95);
+    uint asked = faces[words + FACE_REQUEST];
+    float age = asked == 0u ? 1.0 : min(float(voxels.cache.y - asked) / REQUEST_FRAMES, 1.0);
+    return color * mix(1.0, DARKEST, age);
+}
+#else
+vec3 cache_color(surface s)
+{
+    return vec3(cached_irradiance(s.position, s.geometric_normal).a);
+}
+#endif
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size.xy)))
+        return;
+    surface s = gbuffer_load(pixel);
+    vec3 color = s.shading < SHADE_UNLIT ? cache_color(s) : vec3(0.0);
+    radiance[pixel_index(pixel)] = vec4(color, 1.0);
+}

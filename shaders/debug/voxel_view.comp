@@ -1,0 +1,201 @@
+// The voxels of one level as a ray meets them. In: index, cells, face records, radiance texture. Out:
+// radiance, as light (SHOW 3 and 4) or as values that are shown without exposure and tone curve.
+//
+// SHOW 0: opacity 1 - exp(-depth) of the chosen face; 1: its albedo; 2: its mean normal; 3: its
+// radiance; 4: its cached irradiance / pi. CELLS 0: a mip level, which has opacity and radiance alone;
+// a checker stands for the rest. Where a voxel has no surface that faces the chosen way, it is shown
+// dimmed by the face that looks most towards the eye.
+#define CELLS_ACCESS readonly
+#include "lib/voxel_cells.glsl"
+#include "lib/display.glsl"
+#include "lib/radiance.glsl"
+
+layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+
+layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
+
+#define FROM_TEXTURE (SHOW == 0 || SHOW == 3)
+#define IS_LIGHT     (SHOW == 3 || SHOW == 4)
+
+const float DIMMED = 0.3;
+const float LEAST_SHARE = 0.03;
+
+struct voxel_hit {
+    bool found;
+    ivec3 voxel;
+    bvec3 side;  // axis of the face that was entered
+    float t;     // along the ray, whose forward part is 1
+    vec3 place;  // within the voxel
+};
+
+// Light times depth, and depth.
+vec4 face_texel(uint level, ivec3 voxel, uint face)
+{
+    ivec4 texels = voxels.levels[level].texels;
+    ivec3 address = slot_address(level, voxel_slot(level, voxel));
+    return texelFetch(voxel_radiance, texels.xyz + ivec3(texels.w * int(face), 0, 0) + address, 0);
+}
+
+float total_depth(uint level, ivec3 voxel)
+{
+    float depth = 0.0;
+    for (uint face = 0u; face < uint(VOXEL_DIRECTIONS); face++)
+        depth += face_texel(level, voxel, face).a;
+    return depth;
+}
+
+bool is_occupied(uint level, ivec3 voxel)
+{
+#if CELLS
+    return find_cell(level, voxel) != VOXEL_NONE;
+#else
+    return total_depth(level, voxel) > 0.0;
+#endif
+}
+
+// The first occupied voxel but for the one that the eye is in (Amanatides and Woo 1987, "A Fast Voxel
+// Traversal Algorithm for Ray Tracing"). Origin and direction in voxels of the level.
+voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
+{
+    voxel_hit hit;
+    hit.found = false;
+    ivec4 box = voxels.levels[level].origin;
+    direction = mix(direction, vec3(1e-9), lessThan(abs(direction), vec3(1e-9)));
+    vec3 inverse = 1.0 / direction;
+    vec3 to_low = (vec3(box.xyz) - origin) * inverse;
+    vec3 to_high = (vec3(box.xyz + box.w) - origin) * inverse;
+    vec3 enter = min(to_low, to_high);
+    vec3 leave = max(to_low, to_high);
+    float start = max(max(enter.x, max(enter.y, enter.z)), 0.0);
+    if (start >= min(leave.x, min(leave.y, leave.z)))
+        return hit;
+    hit.t = start;
+    hit.side = greaterThanEqual(enter, vec3(start));
+    hit.voxel = clamp(ivec3(floor(origin + start * direction)), box.xyz, box.xyz + box.w - 1);
+    ivec3 step = ivec3(sign(direction));
+    vec3 next = (vec3(hit.voxel + max(step, ivec3(0))) - origin) * inverse;
+    bool outside = start > 0.0;
+    for (int i = 0; i < 3 * box.w; i++) {
+        if (outside && is_occupied(level, hit.voxel)) {
+            hit.found = true;
+            break;
+        }
+        outside = true;
+        hit.t = min(next.x, min(next.y, next.z));
+        hit.side = lessThanEqual(next, vec3(hit.t));
+        hit.voxel += step * ivec3(hit.side);
+        next += abs(inverse) * vec3(hit.side);
+        if (!voxel_in_level(level, hit.voxel))
+            break;
+    }
+    hit.place = clamp(origin + hit.t * direction - vec3(hit.voxel), 0.0, 1.0);
+    return hit;
+}
+
+// `least`: optical depth that tells a surface from the rim of one that faces another way.
+bool face_has_surface(uint level, ivec3 voxel, uint cell, uint face, float least)
+{
+#if FROM_TEXTURE
+    return face_texel(level, voxel, face).a > least;
+#else
+    uint words = cell == VOXEL_NONE ? VOXEL_NONE : cell_face(cell, face);
+    return words != VOXEL_NONE && faces[words + FACE_NORMAL] != VOXEL_NONE;
+#endif
+}
+
+// The chosen face, or the one of those with a surface that looks most against the ray; VOXEL_NONE if
+// the voxel has no surface.
+uint shown_face(uint level, ivec3 voxel, uint cell, uint chosen, vec3 direction)
+{
+    float least = 0.0;
+#if FROM_TEXTURE
+    least = LEAST_SHARE * total_depth(level, voxel);
+#endif
+    if (face_has_surface(level, voxel, cell, chosen, least))
+        return chosen;
+    uint best = VOXEL_NONE;
+    float most = -2.0;
+    for (uint face = 0u; face < VOXEL_FACES; face++) {
+        float towards = -dot(direction, face_direction(face));
+        if (towards > most && face_has_surface(level, voxel, cell, face, least)) {
+            best = face;
+            most = towards;
+        }
+    }
+    return best;
+}
+
+// What a face shows; `words` is its record.
+vec3 face_color(uint level, ivec3 voxel, uint face, uint words)
+{
+#if SHOW == 0
+    return vec3(1.0 - exp(-face_texel(level, voxel, face).a));
+#elif SHOW == 1
+    uint bits = faces[words + FACE_ALBEDO];
+    return transfer(vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0);
+#elif SHOW == 2
+    return octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL])) * 0.5 + 0.5;
+#elif SHOW == 3
+    vec4 texel = face_texel(level, voxel, face);
+    return texel.rgb * (voxels.anchor.w / texel.a);
+#else
+    bool known = (faces[words + FACE_STATE] & FACE_VALID) != 0u;
+    return known ? face_light(words).rgb * voxels.anchor.w : vec3(0.0);
+#endif
+}
+
+// Dark edges where voxels are large enough for them, and a tone for each axis.
+float block_shade(voxel_hit hit, float pixels_per_voxel)
+{
+    vec3 rim = max(min(hit.place, 1.0 - hit.place), vec3(hit.side));
+    float line = 1.0 - clamp(min(rim.x, min(rim.y, rim.z)) * pixels_per_voxel - 0.5, 0.0, 1.0);
+    float strength = 0.35 * clamp((pixels_per_voxel - 4.0) / 8.0, 0.0, 1.0);
+    float tone = hit.side.y ? 1.0 : hit.side.x ? 0.82 : 0.91;
+    return tone * (1.0 - strength * line);
+}
+
+// There is nothing of the kind here.
+vec3 checker(ivec3 voxel)
+{
+    return ((voxel.x + voxel.y + voxel.z) & 1) != 0 ? vec3(0.34, 0.0, 0.3) : vec3(0.22, 0.0, 0.19);
+}
+
+vec3 shown_color(uint level, voxel_hit hit, vec3 direction)
+{
+#if !CELLS && !FROM_TEXTURE
+    return checker(hit.voxel);
+#else
+    uint chosen = (frame.options.x >> 16) & 7u;
+    uint cell = VOXEL_NONE;
+#if CELLS
+    cell = find_cell(level, hit.voxel);
+#endif
+    uint face = shown_face(level, hit.voxel, cell, chosen, direction);
+    if (face == VOXEL_NONE)
+        return IS_LIGHT ? vec3(0.0) : checker(hit.voxel);
+    uint words = 0u;
+#if !FROM_TEXTURE
+    words = cell_face(cell, face);
+#endif
+    return face_color(level, hit.voxel, face, words) * (face == chosen ? 1.0 : DIMMED);
+#endif
+}
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, frame.size.xy)))
+        return;
+    uint level = (frame.options.x >> 8) & 0xffu;
+    float inverse = voxels.levels[level].size.y;
+    vec3 direction = ray_direction(vec2(pixel)) * inverse;
+    voxel_hit hit = march_voxels(level, (frame.eye.xyz - voxels.anchor.xyz) * inverse, direction);
+    vec3 color = vec3(0.0);
+    if (hit.found) {
+        color = shown_color(level, hit, normalize(direction));
+#if !IS_LIGHT
+        color *= block_shade(hit, 1.0 / max(hit.t * length(frame.ray_dx.xyz) * inverse, 1e-6));
+#endif
+    }
+    radiance[pixel.y * frame.size.x + pixel.x] = vec4(color, 1.0);
+}
