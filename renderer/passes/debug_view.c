@@ -45,7 +45,10 @@ const char *frame_blank_reason(const struct frame *frame)
 // The pass that makes the picture by itself, since the view is of its light alone; NULL for none.
 static const struct pass *drawing_pass(const struct frame *frame)
 {
-    return frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE ? &indirect_diffuse_pass : NULL;
+    enum debug_view view = frame->params->debug_view;
+    return view == DEBUG_VIEW_INDIRECT_DIFFUSE    ? &indirect_diffuse_pass
+           : view == DEBUG_VIEW_INDIRECT_SPECULAR ? &indirect_specular_pass
+                                                  : NULL;
 }
 
 static const char *debug_view_skip_reason(const struct frame *frame)

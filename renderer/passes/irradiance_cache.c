@@ -32,7 +32,9 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
     const struct gpu_program *march = gather ? voxel_program(frame, pass, "gi/cache_trace.comp",
                                                              "PIXEL_CONES 0\nMARCH 1\n", out_error)
                                              : NULL;
-    if (!march)
+    const struct gpu_program *smooth =
+        march ? voxel_program(frame, pass, "gi/cache_smooth.comp", "", out_error) : NULL;
+    if (!smooth)
         return false;
     gpu_buffer_fill(volume->counters, COUNTER_CACHE_CLASSES * 4, CACHE_CLASSES * 4, 0);
     uint32_t pixels = GROUP_EDGE * REQUEST_EDGE;
@@ -46,6 +48,8 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
     gpu_dispatch_indirect(frame->gpu, gather, volume->counters, COUNTER_GATHER * 4);
     gpu_barrier(frame->gpu);
     gpu_dispatch_indirect(frame->gpu, march, volume->counters, COUNTER_MARCH * 4);
+    gpu_barrier(frame->gpu);
+    gpu_dispatch_indirect(frame->gpu, smooth, volume->counters, COUNTER_LISTS * 4);
     return true;
 }
 

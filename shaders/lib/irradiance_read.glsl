@@ -52,7 +52,7 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
             float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
             facing *= facing;
             float w = share * facing * facing;
-            sum += w * face_light(words);
+            sum += w * face_shown_light(words);
             weight += w;
         }
     }
@@ -72,7 +72,7 @@ void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout 
         if (direction == VOXEL_NONE || (faces[words + FACE_STATE] & FACE_VALID) == 0u)
             continue;
         float w = 0.01 + max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
-        sum += w * face_light(words);
+        sum += w * face_shown_light(words);
         weight += w;
     }
 }

@@ -34,6 +34,13 @@ vec4 face_light(uint words)
                 unpackHalf2x16(faces[words + FACE_LIGHT + 1u]));
 }
 
+// The same as pixels see it: averaged over neighbours, which look in different directions.
+vec4 face_shown_light(uint words)
+{
+    return vec4(unpackHalf2x16(faces[words + FACE_SHOWN]),
+                unpackHalf2x16(faces[words + FACE_SHOWN + 1u]));
+}
+
 // The cell of a voxel of the level, or VOXEL_NONE.
 uint find_cell(uint level, ivec3 voxel)
 {

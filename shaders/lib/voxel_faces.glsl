@@ -27,6 +27,8 @@ void inherit_light(uint words, uint level, ivec3 voxel, uint face)
         return;
     faces[words + FACE_LIGHT] = faces[from + FACE_LIGHT];
     faces[words + FACE_LIGHT + 1u] = faces[from + FACE_LIGHT + 1u];
+    faces[words + FACE_SHOWN] = faces[from + FACE_SHOWN];
+    faces[words + FACE_SHOWN + 1u] = faces[from + FACE_SHOWN + 1u];
     faces[words + FACE_STATE] = FACE_VALID;
 }
 

@@ -95,6 +95,8 @@ void inherit_irradiance(uint slot, ivec3 corner)
         faces[to + FACE_NORMAL] = faces[like + FACE_NORMAL];
         faces[to + FACE_LIGHT] = packHalf2x16(sum.xy);
         faces[to + FACE_LIGHT + 1u] = packHalf2x16(sum.zw);
+        faces[to + FACE_SHOWN] = faces[to + FACE_LIGHT];
+        faces[to + FACE_SHOWN + 1u] = faces[to + FACE_LIGHT + 1u];
         faces[to + FACE_STATE] = FACE_VALID;
     }
 }
