@@ -52,7 +52,7 @@ const char *const parameter_type_names[PARAMETER_TYPE_COUNT] = {
 #define MAX_SIZE_M       1e6
 
 // As render_settings_init() has it.
-#define GI_METHOD_DEFAULT "\"none\""
+#define GI_METHOD_DEFAULT "\"clipmap\""
 
 static const struct parameter parameters[] = {
     STRING_(GROUP_LIGHT, "name", "Name shown to people."),

@@ -93,7 +93,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
 void render_settings_init(struct render_settings *settings)
 {
     *settings = (struct render_settings){
-        .gi_method = GI_METHOD_NONE,
+        .gi_method = GI_METHOD_CLIPMAP,
         .indirect_intensity = 1.0f,
         .soft_shadows = true,
         .indirect_specular = true,

@@ -39,6 +39,7 @@ struct frame_params test_params(uint32_t width, uint32_t height, enum frame_outp
     struct frame_params params = {
         .width = width, .height = height, .quality = QUALITY_FINAL, .output = output};
     render_settings_init(&params.settings);
+    params.settings.gi_method = GI_METHOD_NONE;
     params.settings.exposure_mode = EXPOSURE_FIXED;
     params.settings.tonemap = TONEMAP_NONE;
     params.camera.up[1] = 1.0f;
