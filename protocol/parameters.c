@@ -189,7 +189,11 @@ static const struct parameter parameters[] = {
                 "ids", "lights_per_tile", "shadow_cascades", "voxel_opacity", "voxel_albedo",
                 "voxel_normal", "voxel_radiance", "voxel_irradiance", "indirect_diffuse",
                 "indirect_specular", "ambient_occlusion", "cache_age", "tile_classes"),
-          "Which picture to show."),
+          "Which picture to show. voxel_*: debug_level and debug_face, dimmed where another face "
+          "stands in. cache_age: green up to date, yellow light to be gathered anew, red traced "
+          "through old geometry, light blue light of another level, blue never traced. "
+          "tile_classes: green matte, blue glossy, cyan transparent, yellow emissive, magenta "
+          "several."),
     INT_(GROUP_VIEW, "debug_level", 0, 8, "", "0",
          "Which cube or mip level the voxel pictures show; 0 is the finest."),
     ENUM_(GROUP_VIEW, "debug_face", 0, "\"+x\"", NAMES("+x", "-x", "+y", "-y", "+z", "-z"),

@@ -4,8 +4,9 @@
 // AGE 0: openness, white where nothing near hides the hemisphere. AGE 1: how the record of each
 // pixel's voxel face has come about: green, its light is of this generation and its cones went through
 // geometry as it is; yellow, its light is of an older generation and will be gathered at the hits of
-// its cones; red, its cones went through older geometry; blue, never traced; grey, there is no record.
-// The older the newest request of a pixel for it, the darker.
+// its cones; red, its cones went through older geometry; light blue, never traced, but with light
+// that another level has; blue, never traced; grey, there is no record. The older the newest request
+// of a pixel for it, the darker.
 #define CELLS_ACCESS readonly
 #include "lib/gbuffer.glsl"
 #include "lib/irradiance_read.glsl"
@@ -54,7 +55,7 @@ vec3 cache_color(surface s)
     if ((state >> FACE_EPOCH_BIT) != voxels.shape.w)
         color = vec3(0.9, 0.2, 0.15);
     if ((state & FACE_MARCHED) == 0u)
-        color = vec3(0.2, 0.35, 0.95);
+        color = (state & FACE_VALID) != 0u ? vec3(0.35, 0.75, 0.95) : vec3(0.15, 0.25, 0.95);
     uint asked = faces[words + FACE_REQUEST];
     float age = asked == 0u ? 1.0 : min(float(voxels.cache.y - asked) / REQUEST_FRAMES, 1.0);
     return color * mix(1.0, DARKEST, age);

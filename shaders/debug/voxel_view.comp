@@ -53,7 +53,7 @@ bool is_occupied(uint level, ivec3 voxel)
 #endif
 }
 
-// The first occupied voxel but for the one that the eye is in (Amanatides and Woo 1987, "A Fast Voxel
+// The first occupied voxel but for those next to the eye, which would hide the rest (Amanatides and Woo 1987, "A Fast Voxel
 // Traversal Algorithm for Ray Tracing"). Origin and direction in voxels of the level.
 voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
 {
@@ -74,13 +74,13 @@ voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
     hit.voxel = clamp(ivec3(floor(origin + start * direction)), box.xyz, box.xyz + box.w - 1);
     ivec3 step = ivec3(sign(direction));
     vec3 next = (vec3(hit.voxel + max(step, ivec3(0))) - origin) * inverse;
-    bool outside = start > 0.0;
+    ivec3 eye_voxel = ivec3(floor(origin));
     for (int i = 0; i < 3 * box.w; i++) {
-        if (outside && is_occupied(level, hit.voxel)) {
+        bool far = any(greaterThan(abs(hit.voxel - eye_voxel), ivec3(1)));
+        if (far && is_occupied(level, hit.voxel)) {
             hit.found = true;
             break;
         }
-        outside = true;
         hit.t = min(next.x, min(next.y, next.z));
         hit.side = lessThanEqual(next, vec3(hit.t));
         hit.voxel += step * ivec3(hit.side);
@@ -125,13 +125,40 @@ uint shown_face(uint level, ivec3 voxel, uint cell, uint chosen, vec3 direction)
     return best;
 }
 
+#if SHOW == 1
+// A record has no albedo of its own where a finer level fills a clip level: that of a voxel of the
+// finer level stands for it.
+uint record_with_albedo(uint level, ivec3 voxel, uint face, uint words)
+{
+    bool bare = true;
+    for (uint finer = level; finer > 0u && bare; finer--) {
+        bare = faces[words + FACE_ALBEDO] == 0u &&
+               unpackHalf2x16(faces[words + FACE_DIRECT + 1u]).y == 0.0;
+        uint found = VOXEL_NONE;
+        ivec3 corner = 2 * voxel;
+        for (int i = 0; i < 8; i++) {
+            ivec3 child = corner + ivec3(i & 1, (i >> 1) & 1, i >> 2);
+            uint cell = voxel_in_level(finer - 1u, child) ? find_cell(finer - 1u, child) : VOXEL_NONE;
+            uint record = cell == VOXEL_NONE ? VOXEL_NONE : cell_face(cell, face);
+            if (record != VOXEL_NONE && faces[record + FACE_NORMAL] != VOXEL_NONE) {
+                found = record;
+                voxel = child;
+            }
+        }
+        bare = bare && found != VOXEL_NONE;
+        words = bare ? found : words;
+    }
+    return words;
+}
+#endif
+
 // What a face shows; `words` is its record.
 vec3 face_color(uint level, ivec3 voxel, uint face, uint words)
 {
 #if SHOW == 0
     return vec3(1.0 - exp(-face_texel(level, voxel, face).a));
 #elif SHOW == 1
-    uint bits = faces[words + FACE_ALBEDO];
+    uint bits = faces[record_with_albedo(level, voxel, face, words) + FACE_ALBEDO];
     return transfer(vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0);
 #elif SHOW == 2
     return octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL])) * 0.5 + 0.5;
