@@ -212,7 +212,8 @@ static bool covers_scene(const struct voxel_volume *volume, const struct residen
 {
     float old_size = 0.0f, size = 0.0f;
     for (int axis = 0; axis < 3; axis++) {
-        float slack = 2.0f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
+        // Less than the margin, of which the anchor's offset takes a third of a voxel.
+        float slack = 1.5f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
         float low = resident->bounds_min[axis], high = resident->bounds_max[axis];
         if (low < volume->bounds_min[axis] - slack || high > volume->bounds_max[axis] + slack)
             return false;
@@ -412,6 +413,7 @@ static void fill_levels(const struct voxel_volume *volume, struct voxel_block *b
         target->index[0] = mip ? 0 : i << (3 * log2);
         target->index[1] = log2;
         target->index[2] = clipmap && !mip;
+        target->index[3] = volume->dirty[i].count > 0;
         target->size[0] = (float)level->voxel_edge_m;
         target->size[1] = (float)(1.0 / level->voxel_edge_m);
     }

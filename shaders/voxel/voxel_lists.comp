@@ -22,11 +22,17 @@ void append(uint list, uint entry)
         atomicOr(counters[COUNTER_OVERFLOW], 1u);
 }
 
+// Mips and their lists follow from the coarsest level that has cells.
+bool mips_are_dirty()
+{
+    return voxels.levels[voxels.shape.x - 1u].index.w != 0u;
+}
+
 #if STAGE == 0
 void main()
 {
     uint list = gl_GlobalInvocationID.x;
-    if (list < uint(VOXEL_MAX_LEVELS))
+    if (list < (mips_are_dirty() ? uint(VOXEL_MAX_LEVELS) : voxels.shape.x))
         counters[COUNTER_LISTS + list * COUNTER_LIST_WORDS + 3u] = 0u;
     if (list != 0u)
         return;
@@ -44,24 +50,26 @@ void main()
     counters[COUNTER_SURFELS] = min(counters[COUNTER_SURFELS], voxels.counts.w);
 }
 #elif STAGE == 1
-void main()
+// An invocation takes so many cells and makes room for all of them at once: one counter for all is
+// what this would wait for otherwise.
+const uint CELL_RUN = 16u;
+
+// The list that a cell goes into; VOXEL_NONE for a free one.
+uint list_of(uint word)
 {
-    uint cell = region_invocation();
-    if (cell >= counters[COUNTER_CELLS])
-        return;
-    uint word = cells[cell * CELL_WORDS];
     if (word == VOXEL_NONE)
-        return;
+        return VOXEL_NONE;
     uint level = word >> CELL_LEVEL_BIT;
-    uint slot = word & CELL_SLOT_MASK;
-    ivec3 voxel = slot_voxel(level, slot);
-    ivec3 inside = voxel - voxels.levels[level].inner.xyz;
-    bool filtered = all(greaterThanEqual(inside, ivec3(0))) &&
-                    all(lessThan(inside, ivec3(voxels.levels[level].inner.w)));
-    append(filtered ? level : LIST_LIT, filtered ? slot : cell);
+    ivec4 inner = voxels.levels[level].inner;
+    ivec3 inside = slot_voxel(level, word & CELL_SLOT_MASK) - inner.xyz;
+    bool filtered = all(greaterThanEqual(inside, ivec3(0))) && all(lessThan(inside, ivec3(inner.w)));
+    return filtered ? level : LIST_LIT;
+}
+
+void append_mips(uint slot)
+{
     uint base = voxels.shape.x - 1u;
-    if (level != base)
-        return;
+    ivec3 voxel = slot_voxel(base, slot);
     uint bits = voxels.counts.x * voxels.options.x;
     uint first_bit = 0u;
     for (uint mip = base + 1u; mip < voxels.counts.x; mip++) {
@@ -72,6 +80,38 @@ void main()
             append(mip, coarse);
         first_bit += 1u << (3u * voxels.levels[mip].index.y);
     }
+}
+
+void main()
+{
+    uint first = region_invocation() * CELL_RUN;
+    uint end = min(first + CELL_RUN, counters[COUNTER_CELLS]);
+    uint found = 0u; // a bit for each list
+    uint of_base = 0u;
+    for (uint cell = first; cell < end; cell++) {
+        uint word = cells[cell * CELL_WORDS];
+        uint list = list_of(word);
+        found |= list == VOXEL_NONE ? 0u : 1u << list;
+        if (mips_are_dirty() && word != VOXEL_NONE && (word >> CELL_LEVEL_BIT) == voxels.shape.x - 1u)
+            of_base |= 1u << (cell - first);
+    }
+    for (; found != 0u; found &= found - 1u) {
+        uint list = uint(findLSB(found));
+        uint members = 0u;
+        for (uint cell = first; cell < end; cell++)
+            members |= list_of(cells[cell * CELL_WORDS]) == list ? 1u << (cell - first) : 0u;
+        uint at = atomicAdd(counters[COUNTER_LISTS + list * COUNTER_LIST_WORDS + 3u],
+                            uint(bitCount(members)));
+        if (at + uint(bitCount(members)) > voxels.options.x)
+            atomicOr(counters[COUNTER_OVERFLOW], 1u);
+        for (; members != 0u && at < voxels.options.x; members &= members - 1u) {
+            uint cell = first + uint(findLSB(members));
+            list_words[list * voxels.options.x + at++] =
+                list == LIST_LIT ? cell : cells[cell * CELL_WORDS] & CELL_SLOT_MASK;
+        }
+    }
+    for (; of_base != 0u; of_base &= of_base - 1u)
+        append_mips(cells[(first + uint(findLSB(of_base))) * CELL_WORDS] & CELL_SLOT_MASK);
 }
 #elif STAGE == 3
 void main()
