@@ -106,7 +106,7 @@ struct voxel_level_block {
     ivec4 origin; // lowest voxel in voxels of this level from the anchor; w: voxels along an edge
     ivec4 inner;  // lowest voxel that the finer level fills; w: how many along an edge, 0 none
     ivec4 texels; // first texel of face 0 behind the border; w: texels from face to face
-    uvec4 index;  // first word in the index; log2 of the edge; 1 if addresses wrap; 1 if any of it is dirty
+    uvec4 index;  // first word in the index; log2 of the edge; 1 if addresses wrap; 1 if any is dirty
     vec4 size;    // voxel edge in m, its inverse, unused, unused
 };
 

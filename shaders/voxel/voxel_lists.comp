@@ -50,8 +50,8 @@ void main()
     counters[COUNTER_SURFELS] = min(counters[COUNTER_SURFELS], voxels.counts.w);
 }
 #elif STAGE == 1
-// An invocation takes so many cells and makes room for all of them at once: one counter for all is
-// what this would wait for otherwise.
+// An invocation takes so many cells and makes room for those that are lit at once: the counter is
+// what all would wait for otherwise.
 const uint CELL_RUN = 16u;
 
 // The list that a cell goes into; VOXEL_NONE for a free one.
@@ -86,29 +86,28 @@ void main()
 {
     uint first = region_invocation() * CELL_RUN;
     uint end = min(first + CELL_RUN, counters[COUNTER_CELLS]);
-    uint found = 0u; // a bit for each list
-    uint of_base = 0u;
+    bool mips = mips_are_dirty();
+    uint lit = 0u, filtered = 0u, of_base = 0u; // a bit for each cell
     for (uint cell = first; cell < end; cell++) {
+        uint bit = 1u << (cell - first);
         uint word = cells[cell * CELL_WORDS];
         uint list = list_of(word);
-        found |= list == VOXEL_NONE ? 0u : 1u << list;
-        if (mips_are_dirty() && word != VOXEL_NONE && (word >> CELL_LEVEL_BIT) == voxels.shape.x - 1u)
-            of_base |= 1u << (cell - first);
+        lit |= list == LIST_LIT ? bit : 0u;
+        filtered |= list != LIST_LIT && list != VOXEL_NONE ? bit : 0u;
+        bool base = word != VOXEL_NONE && (word >> CELL_LEVEL_BIT) == voxels.shape.x - 1u;
+        of_base |= mips && base ? bit : 0u;
     }
-    for (; found != 0u; found &= found - 1u) {
-        uint list = uint(findLSB(found));
-        uint members = 0u;
-        for (uint cell = first; cell < end; cell++)
-            members |= list_of(cells[cell * CELL_WORDS]) == list ? 1u << (cell - first) : 0u;
-        uint at = atomicAdd(counters[COUNTER_LISTS + list * COUNTER_LIST_WORDS + 3u],
-                            uint(bitCount(members)));
-        if (at + uint(bitCount(members)) > voxels.options.x)
-            atomicOr(counters[COUNTER_OVERFLOW], 1u);
-        for (; members != 0u && at < voxels.options.x; members &= members - 1u) {
-            uint cell = first + uint(findLSB(members));
-            list_words[list * voxels.options.x + at++] =
-                list == LIST_LIT ? cell : cells[cell * CELL_WORDS] & CELL_SLOT_MASK;
-        }
+    uint count = uint(bitCount(lit));
+    uint at = atomicAdd(counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u], count);
+    if (at + count > voxels.options.x) {
+        atomicOr(counters[COUNTER_OVERFLOW], 1u);
+        lit = 0u;
+    }
+    for (; lit != 0u; lit &= lit - 1u)
+        list_words[LIST_LIT * voxels.options.x + at++] = first + uint(findLSB(lit));
+    for (; filtered != 0u; filtered &= filtered - 1u) {
+        uint word = cells[(first + uint(findLSB(filtered))) * CELL_WORDS];
+        append(word >> CELL_LEVEL_BIT, word & CELL_SLOT_MASK);
     }
     for (; of_base != 0u; of_base &= of_base - 1u)
         append_mips(cells[(first + uint(findLSB(of_base))) * CELL_WORDS] & CELL_SLOT_MASK);
