@@ -51,7 +51,8 @@ static bool create_pools(struct voxel_volume *volume)
     volume->list_words = volume->level_count * cells + volume->mip_words;
     volume->cells = make(volume, "gi.cells", cells * CELL_WORDS);
     volume->surfels = make(volume, "gi.surfels", surfels * SURFEL_WORDS);
-    volume->face_capacity = volume->cell_capacity + volume->cell_capacity / 2;
+    volume->face_capacity = (volume->cell_capacity + volume->cell_capacity / 2)
+                            << volume->face_growth;
     volume->faces = make(volume, "gi.faces", (size_t)volume->face_capacity * face_words(volume));
     volume->free_list = make(volume, "gi.free", cells + 2 * surfels + volume->face_capacity);
     volume->lists = make(volume, "gi.lists", volume->list_words);
@@ -379,9 +380,14 @@ enum voxel_room voxel_volume_check_room(struct voxel_volume *volume)
     free_pools(volume);
     // The counters went on counting beyond the capacity, so they tell how much is needed at least.
     uint32_t cells = counters[COUNTER_CELLS], surfels = counters[COUNTER_SURFELS];
-    volume->cell_capacity = 2 * (cells > volume->cell_capacity ? cells : volume->cell_capacity);
-    volume->surfel_capacity =
-        2 * (surfels > volume->surfel_capacity ? surfels : volume->surfel_capacity);
+    if (counters[COUNTER_OVERFLOW] & OVERFLOW_POOLS) {
+        volume->cell_capacity = 2 * (cells > volume->cell_capacity ? cells : volume->cell_capacity);
+        volume->surfel_capacity =
+            2 * (surfels > volume->surfel_capacity ? surfels : volume->surfel_capacity);
+    }
+    // From one and a half a cell to six, beyond which none has.
+    if (counters[COUNTER_OVERFLOW] & OVERFLOW_FACES && volume->face_growth < 2)
+        volume->face_growth++;
     volume->everything = true;
     return create_pools(volume) ? VOXEL_ROOM_GROWN : VOXEL_ROOM_NONE;
 }

@@ -66,7 +66,7 @@
 #define COUNTER_SURFELS          2
 #define COUNTER_FREE_SURFELS     3
 #define COUNTER_RETURNED_SURFELS 4
-#define COUNTER_OVERFLOW         5
+#define COUNTER_OVERFLOW         5 // bits; OVERFLOW_FACES is seen by the next voxelization
 #define COUNTER_LIST_OVERFLOW    6
 #define COUNTER_CACHE_LEFT       7 // entries that the newest selection found stale
 #define COUNTER_CACHE_CHANGE     8 // largest change of an entry in this generation (bits of a float)
@@ -79,6 +79,8 @@
 #define COUNTER_FACES            30
 #define COUNTER_FREE_FACES       31
 #define COUNTER_LISTS            32
+#define OVERFLOW_POOLS           1u
+#define OVERFLOW_FACES           2u
 #define COUNTER_LIST_WORDS       4
 #define COUNTER_COUNT            (COUNTER_LISTS + VOXEL_MAX_LEVELS * COUNTER_LIST_WORDS)
 

@@ -13,7 +13,7 @@ uint allocate_cell()
     uint cell = atomicAdd(counters[COUNTER_CELLS], 1u);
     if (cell < voxels.counts.z)
         return cell;
-    atomicOr(counters[COUNTER_OVERFLOW], 1u);
+    atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
     return VOXEL_NONE;
 }
 

@@ -19,7 +19,7 @@ void append(uint list, uint entry)
     if (at < voxels.options.x)
         list_words[list * voxels.options.x + at] = entry;
     else
-        atomicOr(counters[COUNTER_OVERFLOW], 1u);
+        atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
 }
 
 // Mips and their lists follow from the coarsest level that has cells.
@@ -100,7 +100,7 @@ void main()
     uint count = uint(bitCount(lit));
     uint at = atomicAdd(counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u], count);
     if (at + count > voxels.options.x) {
-        atomicOr(counters[COUNTER_OVERFLOW], 1u);
+        atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
         lit = 0u;
     }
     for (; lit != 0u; lit &= lit - 1u)
