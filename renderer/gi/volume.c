@@ -51,7 +51,8 @@ static bool create_pools(struct voxel_volume *volume)
     volume->list_words = volume->level_count * cells + volume->mip_words;
     volume->cells = make(volume, "gi.cells", cells * CELL_WORDS);
     volume->surfels = make(volume, "gi.surfels", surfels * SURFEL_WORDS);
-    volume->face_capacity = volume->cell_capacity + volume->cell_capacity / 2;
+    volume->face_capacity = (volume->cell_capacity + volume->cell_capacity / 2)
+                            << volume->face_growth;
     volume->faces = make(volume, "gi.faces", (size_t)volume->face_capacity * face_words(volume));
     volume->free_list = make(volume, "gi.free", cells + 2 * surfels + volume->face_capacity);
     volume->lists = make(volume, "gi.lists", volume->list_words);
@@ -212,7 +213,8 @@ static bool covers_scene(const struct voxel_volume *volume, const struct residen
 {
     float old_size = 0.0f, size = 0.0f;
     for (int axis = 0; axis < 3; axis++) {
-        float slack = 2.0f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
+        // Less than the margin, of which the anchor's offset takes a third of a voxel.
+        float slack = 1.5f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
         float low = resident->bounds_min[axis], high = resident->bounds_max[axis];
         if (low < volume->bounds_min[axis] - slack || high > volume->bounds_max[axis] + slack)
             return false;
@@ -378,9 +380,14 @@ enum voxel_room voxel_volume_check_room(struct voxel_volume *volume)
     free_pools(volume);
     // The counters went on counting beyond the capacity, so they tell how much is needed at least.
     uint32_t cells = counters[COUNTER_CELLS], surfels = counters[COUNTER_SURFELS];
-    volume->cell_capacity = 2 * (cells > volume->cell_capacity ? cells : volume->cell_capacity);
-    volume->surfel_capacity =
-        2 * (surfels > volume->surfel_capacity ? surfels : volume->surfel_capacity);
+    if (counters[COUNTER_OVERFLOW] & OVERFLOW_POOLS) {
+        volume->cell_capacity = 2 * (cells > volume->cell_capacity ? cells : volume->cell_capacity);
+        volume->surfel_capacity =
+            2 * (surfels > volume->surfel_capacity ? surfels : volume->surfel_capacity);
+    }
+    // From one and a half a cell to six, beyond which none has.
+    if (counters[COUNTER_OVERFLOW] & OVERFLOW_FACES && volume->face_growth < 2)
+        volume->face_growth++;
     volume->everything = true;
     return create_pools(volume) ? VOXEL_ROOM_GROWN : VOXEL_ROOM_NONE;
 }
@@ -412,6 +419,7 @@ static void fill_levels(const struct voxel_volume *volume, struct voxel_block *b
         target->index[0] = mip ? 0 : i << (3 * log2);
         target->index[1] = log2;
         target->index[2] = clipmap && !mip;
+        target->index[3] = volume->dirty[i].count > 0;
         target->size[0] = (float)level->voxel_edge_m;
         target->size[1] = (float)(1.0 / level->voxel_edge_m);
     }

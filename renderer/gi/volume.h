@@ -84,6 +84,7 @@ struct voxel_volume {
     uint32_t cell_capacity;
     uint32_t surfel_capacity;
     uint32_t face_capacity;
+    uint32_t face_growth; // doublings
     uint32_t tile_capacity;
     uint32_t chunk_capacity;
     uint32_t cell_count; // cells up to the highest in use

@@ -6,12 +6,21 @@
 // Groups along x of a dispatch of more groups than one dimension holds.
 #define ROW_GROUPS 4096u
 #define MAX_GROWTH 12
+// As in shaders/lib/voxel_work.glsl and shaders/voxel/voxel_lists.comp.
+#define REGION_RUN 32u
+#define CELL_RUN   16u
 
 static const char *voxelize_skip_reason(const struct frame *frame)
 {
     if (!frame->volume)
         return "no effect needs voxels";
     return frame->light_work.voxelize ? NULL : "geometry and clip levels unmoved";
+}
+
+// Groups of invocations that take `run` things each.
+static uint32_t groups_of(uint32_t count, uint32_t run)
+{
+    return (count + LINEAR_GROUP * run - 1) / (LINEAR_GROUP * run);
 }
 
 static void dispatch_rows(const struct frame *frame, const struct gpu_program *program,
@@ -64,8 +73,7 @@ static void empty_regions(const struct frame *frame, const struct voxelize_progr
         // Lighting may have taken more face records than were free.
         gpu_dispatch(frame->gpu, programs->mend, 1, 1, 1);
         gpu_barrier(frame->gpu);
-        dispatch_rows(frame, programs->clear,
-                      (volume->region_voxels + LINEAR_GROUP - 1) / LINEAR_GROUP);
+        dispatch_rows(frame, programs->clear, groups_of(volume->region_voxels, REGION_RUN));
     }
     gpu_buffer_fill(volume->counters, COUNTER_TILES * 4, 4, 0);
 }
@@ -83,10 +91,11 @@ static void enter_triangles(const struct frame *frame, const struct voxelize_pro
 static void list_cells(const struct frame *frame, const struct voxelize_programs *programs)
 {
     struct voxel_volume *volume = frame->volume;
-    dispatch_rows(frame, programs->cells,
-                  (volume->region_voxels + LINEAR_GROUP - 1) / LINEAR_GROUP);
+    dispatch_rows(frame, programs->cells, groups_of(volume->region_voxels, REGION_RUN));
     gpu_dispatch(frame->gpu, programs->mend, 1, 1, 1);
     gpu_barrier(frame->gpu);
+    if (volume->dirty[volume->lit_levels - 1].count == 0)
+        return; // mips of the coarsest level are as they were
     size_t first = volume->list_words - volume->mip_words;
     gpu_buffer_fill(volume->lists, first * 4, volume->mip_words * 4, 0);
 }
@@ -103,8 +112,7 @@ static bool voxelize_run(struct frame *frame, const struct pass *pass, struct er
         list_cells(frame, &programs);
         enum voxel_room room = voxel_volume_check_room(volume);
         if (room == VOXEL_ROOM_ENOUGH) {
-            dispatch_rows(frame, programs.list,
-                          (volume->cell_count + LINEAR_GROUP - 1) / LINEAR_GROUP);
+            dispatch_rows(frame, programs.list, groups_of(volume->cell_count, CELL_RUN));
             gpu_dispatch(frame->gpu, programs.arguments, 1, 1, 1);
             volume->everything = false;
             return true;

@@ -44,8 +44,10 @@ uint make_face(uint cell, uint level, ivec3 voxel, uint face)
         record = free_words[free_faces_start() + uint(left) - 1u];
     else
         record = atomicAdd(counters[COUNTER_FACES], 1u);
-    if (record >= voxels.shape.z)
+    if (record >= voxels.shape.z) {
+        atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_FACES);
         return VOXEL_NONE;
+    }
     cells[cell * CELL_WORDS + CELL_FACES + face] = record + 1u;
     words = record * voxels.shape.y;
     for (uint i = 0u; i < FACE_WORDS; i++)

@@ -30,7 +30,7 @@ uint allocate_surfel(uint key)
     } else {
         surfel = atomicAdd(counters[COUNTER_SURFELS], 1u);
         if (surfel >= voxels.counts.w) {
-            atomicOr(counters[COUNTER_OVERFLOW], 1u);
+            atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
             return VOXEL_NONE;
         }
     }

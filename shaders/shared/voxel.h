@@ -67,22 +67,22 @@
 #define COUNTER_SURFELS          2
 #define COUNTER_FREE_SURFELS     3
 #define COUNTER_RETURNED_SURFELS 4
-#define COUNTER_OVERFLOW         5
-#define COUNTER_LIST_OVERFLOW    6
-#define COUNTER_CACHE_LEFT       7 // entries that the newest selection found stale
-#define COUNTER_CACHE_CHANGE                                                                       \
-    8 // largest relative change of a face in this generation (bits of a float)
-#define COUNTER_CACHE_TRACED  9
-#define COUNTER_CACHE_PEAK    10 // largest light of one, likewise
-#define COUNTER_TILES         12 // arguments of the pass over large triangles
-#define COUNTER_MARCH         16 // arguments of tracing cones; number of faces
-#define COUNTER_GATHER        20 // likewise of looking up their hits
-#define COUNTER_CACHE_CLASSES 24 // faces of each class of urgency
-#define COUNTER_FACES         30
-#define COUNTER_FREE_FACES    31
-#define COUNTER_LISTS         32
-#define COUNTER_LIST_WORDS    4
-#define COUNTER_COUNT         (COUNTER_LISTS + VOXEL_MAX_LEVELS * COUNTER_LIST_WORDS)
+#define COUNTER_OVERFLOW         5 // bits; OVERFLOW_FACES is seen by the next voxelization
+#define COUNTER_CACHE_LEFT       7 // faces that the newest selection left stale
+#define COUNTER_CACHE_CHANGE     8 // largest relative change of a face this generation (float)
+#define COUNTER_CACHE_TRACED     9
+#define COUNTER_CACHE_PEAK       10 // largest light of one, likewise
+#define COUNTER_TILES            12 // arguments of the pass over large triangles
+#define COUNTER_MARCH            16 // arguments of tracing cones; number of faces
+#define COUNTER_GATHER           20 // likewise of looking up their hits
+#define COUNTER_CACHE_CLASSES    24 // faces of each class of urgency
+#define COUNTER_FACES            30
+#define COUNTER_FREE_FACES       31
+#define COUNTER_LISTS            32
+#define OVERFLOW_POOLS           1u
+#define OVERFLOW_FACES           2u
+#define COUNTER_LIST_WORDS       4
+#define COUNTER_COUNT            (COUNTER_LISTS + VOXEL_MAX_LEVELS * COUNTER_LIST_WORDS)
 
 // Faces to march: never marched and asked for by pixels, the rest of those asked for, others. Faces
 // to gather: asked for and lively, asked for, others.
@@ -108,8 +108,9 @@ struct voxel_level_block {
     ivec4 origin; // lowest voxel in voxels of this level from the anchor; w: voxels along an edge
     ivec4 inner;  // lowest voxel that the finer level fills; w: how many along an edge, 0 none
     ivec4 texels; // first texel of face 0 behind the border; w: texels from face to face
-    uvec4 index;  // first word in the index; log2 of the edge; 1 if addresses wrap; unused
-    vec4 size;    // voxel edge in m, its inverse, unused, unused
+    uvec4
+        index; // first word in the index; log2 of the edge; 1 if addresses wrap; 1 if any is dirty
+    vec4 size; // voxel edge in m, its inverse, unused, unused
 };
 
 #ifdef __STDC__

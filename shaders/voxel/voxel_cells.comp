@@ -13,16 +13,15 @@ uint allocate_cell()
     uint cell = atomicAdd(counters[COUNTER_CELLS], 1u);
     if (cell < voxels.counts.z)
         return cell;
-    atomicOr(counters[COUNTER_OVERFLOW], 1u);
+    atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
     return VOXEL_NONE;
 }
 
-void main()
+void make_cell(uint number)
 {
     uint level;
     ivec3 voxel;
-    if (!region_voxel(region_invocation(), level, voxel))
-        return;
+    region_voxel(number, level, voxel);
     uint slot = voxel_slot(level, voxel);
     uint at = voxels.levels[level].index.x + slot;
     uint entry = voxel_index[at];
@@ -36,4 +35,12 @@ void main()
     cells[cell * CELL_WORDS + CELL_SURFEL] = entry & ~VOXEL_TAG_SURFEL;
     for (uint face = 0u; face < VOXEL_FACES; face++)
         cells[cell * CELL_WORDS + CELL_FACES + face] = 0u;
+}
+
+void main()
+{
+    uint run = region_invocation();
+    FIND_OCCUPIED(run, occupied)
+    for (; occupied != 0u; occupied &= occupied - 1u)
+        make_cell(run * REGION_RUN + uint(findLSB(occupied)));
 }

@@ -23,17 +23,13 @@ void clear_mips(uint level, ivec3 voxel)
     }
 }
 
-void main()
+void clear_voxel(uint number)
 {
     uint level;
     ivec3 voxel;
-    if (!region_voxel(region_invocation(), level, voxel))
-        return;
+    region_voxel(number, level, voxel);
     uint slot = voxel_slot(level, voxel);
-    uint entry = voxel_index[voxels.levels[level].index.x + slot];
-    if (entry == 0u)
-        return;
-    uint cell = entry - 1u;
+    uint cell = voxel_index[voxels.levels[level].index.x + slot] - 1u;
     uint surfel = cells[cell * CELL_WORDS + CELL_SURFEL];
     while (surfel != VOXEL_NONE) {
         free_words[voxels.counts.z + atomicAdd(counters[COUNTER_FREE_SURFELS], 1u)] = surfel;
@@ -52,4 +48,12 @@ void main()
     for (uint face = 0u; face < voxels.counts.y; face++)
         store_voxel_face(level, address, face, vec4(0.0));
     clear_mips(level, voxel);
+}
+
+void main()
+{
+    uint run = region_invocation();
+    FIND_OCCUPIED(run, occupied)
+    for (; occupied != 0u; occupied &= occupied - 1u)
+        clear_voxel(run * REGION_RUN + uint(findLSB(occupied)));
 }

@@ -19,14 +19,20 @@ void append(uint list, uint entry)
     if (at < voxels.options.x)
         list_words[list * voxels.options.x + at] = entry;
     else
-        atomicOr(counters[COUNTER_OVERFLOW], 1u);
+        atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
+}
+
+// Mips and their lists follow from the coarsest level that has cells.
+bool mips_are_dirty()
+{
+    return voxels.levels[voxels.shape.x - 1u].index.w != 0u;
 }
 
 #if STAGE == 0
 void main()
 {
     uint list = gl_GlobalInvocationID.x;
-    if (list < uint(VOXEL_MAX_LEVELS))
+    if (list < (mips_are_dirty() ? uint(VOXEL_MAX_LEVELS) : voxels.shape.x))
         counters[COUNTER_LISTS + list * COUNTER_LIST_WORDS + 3u] = 0u;
     if (list != 0u)
         return;
@@ -44,24 +50,26 @@ void main()
     counters[COUNTER_SURFELS] = min(counters[COUNTER_SURFELS], voxels.counts.w);
 }
 #elif STAGE == 1
-void main()
+// An invocation takes so many cells and makes room for those that are lit at once: the counter is
+// what all would wait for otherwise.
+const uint CELL_RUN = 16u;
+
+// The list that a cell goes into; VOXEL_NONE for a free one.
+uint list_of(uint word)
 {
-    uint cell = region_invocation();
-    if (cell >= counters[COUNTER_CELLS])
-        return;
-    uint word = cells[cell * CELL_WORDS];
     if (word == VOXEL_NONE)
-        return;
+        return VOXEL_NONE;
     uint level = word >> CELL_LEVEL_BIT;
-    uint slot = word & CELL_SLOT_MASK;
-    ivec3 voxel = slot_voxel(level, slot);
-    ivec3 inside = voxel - voxels.levels[level].inner.xyz;
-    bool filtered = all(greaterThanEqual(inside, ivec3(0))) &&
-                    all(lessThan(inside, ivec3(voxels.levels[level].inner.w)));
-    append(filtered ? level : LIST_LIT, filtered ? slot : cell);
+    ivec4 inner = voxels.levels[level].inner;
+    ivec3 inside = slot_voxel(level, word & CELL_SLOT_MASK) - inner.xyz;
+    bool filtered = all(greaterThanEqual(inside, ivec3(0))) && all(lessThan(inside, ivec3(inner.w)));
+    return filtered ? level : LIST_LIT;
+}
+
+void append_mips(uint slot)
+{
     uint base = voxels.shape.x - 1u;
-    if (level != base)
-        return;
+    ivec3 voxel = slot_voxel(base, slot);
     uint bits = voxels.counts.x * voxels.options.x;
     uint first_bit = 0u;
     for (uint mip = base + 1u; mip < voxels.counts.x; mip++) {
@@ -72,6 +80,37 @@ void main()
             append(mip, coarse);
         first_bit += 1u << (3u * voxels.levels[mip].index.y);
     }
+}
+
+void main()
+{
+    uint first = region_invocation() * CELL_RUN;
+    uint end = min(first + CELL_RUN, counters[COUNTER_CELLS]);
+    bool mips = mips_are_dirty();
+    uint lit = 0u, filtered = 0u, of_base = 0u; // a bit for each cell
+    for (uint cell = first; cell < end; cell++) {
+        uint bit = 1u << (cell - first);
+        uint word = cells[cell * CELL_WORDS];
+        uint list = list_of(word);
+        lit |= list == LIST_LIT ? bit : 0u;
+        filtered |= list != LIST_LIT && list != VOXEL_NONE ? bit : 0u;
+        bool base = word != VOXEL_NONE && (word >> CELL_LEVEL_BIT) == voxels.shape.x - 1u;
+        of_base |= mips && base ? bit : 0u;
+    }
+    uint count = uint(bitCount(lit));
+    uint at = atomicAdd(counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u], count);
+    if (at + count > voxels.options.x) {
+        atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
+        lit = 0u;
+    }
+    for (; lit != 0u; lit &= lit - 1u)
+        list_words[LIST_LIT * voxels.options.x + at++] = first + uint(findLSB(lit));
+    for (; filtered != 0u; filtered &= filtered - 1u) {
+        uint word = cells[(first + uint(findLSB(filtered))) * CELL_WORDS];
+        append(word >> CELL_LEVEL_BIT, word & CELL_SLOT_MASK);
+    }
+    for (; of_base != 0u; of_base &= of_base - 1u)
+        append_mips(cells[(first + uint(findLSB(of_base))) * CELL_WORDS] & CELL_SLOT_MASK);
 }
 #elif STAGE == 3
 void main()

@@ -330,6 +330,22 @@ static void test_pools_do_not_leak(void **state)
     end_walk(&walk);
 }
 
+// Where lighting has found no room for face records, the next voxelization makes it.
+static void test_face_records_grow(void **state)
+{
+    (void)state;
+    struct walk walk;
+    begin_walk(&walk, 9, GI_METHOD_CLIPMAP);
+    uint32_t capacity = walk.volume->face_capacity;
+    walk.volume->face_capacity = 100;
+    voxel_rig_light(&walk.rig, walk.volume);
+    place_object(&walk, 0);
+    voxel_rig_voxelize(&walk.rig, walk.volume, walk.eye);
+    assert_int_equal(walk.volume->face_capacity, 2 * capacity);
+    compare_with_fresh(&walk, 1);
+    end_walk(&walk);
+}
+
 struct texels {
     const float *values; // 4 each
     uint32_t width, height;
@@ -455,6 +471,7 @@ int main(void)
         cmocka_unit_test(test_only_what_comes_into_reach_is_voxelized),
         cmocka_unit_test(test_only_where_objects_move_is_voxelized),
         cmocka_unit_test(test_pools_do_not_leak),
+        cmocka_unit_test(test_face_records_grow),
         cmocka_unit_test(test_filtering_across_the_seam),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
