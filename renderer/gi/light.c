@@ -54,6 +54,7 @@ static void plan_relight(struct voxel_volume *volume, const struct voxel_light_p
     struct voxel_light_state *light = &volume->light;
     work->relight = light->relight;
     work->direct = light->relight_direct;
+    work->fresh_only = light->filling && light->relight_direct;
     work->relight_end = volume->lit_levels;
     if (!light->relight)
         return;
@@ -86,6 +87,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->relight_direct = true;
         volume->lit_key = params->key;
         light->bounce = 0;
+        light->filling = false;
         light->change = 0.0f;
         light->rest = 1.0f;
         light->converged = false;
@@ -93,6 +95,10 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->relight = true;
     }
     if (out_work->voxelize) {
+        // Where all that moved is a clip level, light that had settled need not do so again: only the
+        // voxels that came in are lit and traced.
+        if (light->converged && !light->relight)
+            light->filling = true;
         light->relight = true;
         light->relight_direct = true;
         light->converged = false;
@@ -136,6 +142,13 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
         light->everything_asked ? report->left == 0 : light->quiet_frames >= REQUEST_PATTERN;
     if (!complete)
         return;
+    if (light->filling) {
+        light->filling = false;
+        light->converged = true;
+        light->version++;
+        light->relight = true;
+        return;
+    }
     float change, peak;
     memcpy(&change, &report->change_bits, sizeof(change));
     memcpy(&peak, &report->peak_bits, sizeof(peak));

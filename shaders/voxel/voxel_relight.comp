@@ -1,5 +1,5 @@
 // Lights the occupied voxels of some levels. In: list of cells, surfels, materials, lights, shadow maps,
-// irradiance cache. Out: radiance texture, and the face records but for their indirect light.
+// irradiance cache. FRESH 1: those that have not been lit yet. Out: radiance texture, and the face records but for their indirect light.
 //
 // A face's radiance is the mean of the surfels that face its way: emission, and reflectance times
 // direct and (FEEDBACK 1) indirect irradiance. Materials are looked up here, so that editing one
@@ -133,6 +133,11 @@ void main()
     uint level = cells[cell * CELL_WORDS] >> CELL_LEVEL_BIT;
     if (level < voxels.options.y || level >= voxels.options.z)
         return;
+#if FRESH
+    for (uint i = 0u; i < VOXEL_FACES; i++)
+        if (cells[cell * CELL_WORDS + CELL_FACES + i] != 0u)
+            return;
+#endif
     vec3 corner = vec3(slot_voxel(level, slot));
     side sides[VOXEL_FACES];
     for (uint i = 0u; i < VOXEL_FACES; i++) {
