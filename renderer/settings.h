@@ -148,8 +148,9 @@ struct quality_level {
     float cone_step;
     enum gather_mode gather_mode;
     bool soft_shadows;
-    float specular_roughness; // rougher surfaces reflect as if by the cached irradiance
-    uint32_t still_frames;    // pictures with turned cones that are averaged when nothing moves
+    float specular_roughness;   // rougher surfaces reflect as if by the cached irradiance
+    float specular_reflectance; // and so do those that reflect less than this head-on
+    uint32_t still_frames;      // pictures with turned cones that are averaged when nothing moves
 };
 
 extern const struct quality_level quality_levels[QUALITY_COUNT];

@@ -223,6 +223,7 @@ static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
     struct view *view = frame->view;
     struct voxel_block *block = &volume->uniforms;
     block->light[2] = frame->quality->specular_roughness;
+    block->settle[2] = frame->quality->specular_reflectance;
     frame->still_frames = 1;
     frame->still_count = 1;
     if (frame->gather == GATHER_CACHE)

@@ -95,8 +95,8 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->relight = true;
     }
     if (out_work->voxelize) {
-        // Where all that moved is a clip level, light that had settled need not do so again: only the
-        // voxels that came in are lit and traced.
+        // Where all that moved is a clip level, light that had settled need not do so again: only
+        // the voxels that came in are lit and traced.
         if (light->converged && !light->relight)
             light->filling = true;
         light->relight = true;

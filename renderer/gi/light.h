@@ -10,7 +10,7 @@ struct voxel_light_work {
     bool voxelize;
     bool relight;
     bool direct;            // by lamps, too, rather than by the cache alone
-    bool fresh_only; // only cells that have not been lit before
+    bool fresh_only;        // only cells that have not been lit before
     uint32_t relight_first; // levels
     uint32_t relight_end;
     bool trace;

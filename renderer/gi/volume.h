@@ -38,7 +38,7 @@ struct voxel_instance {
 struct voxel_light_state {
     bool relight;        // voxels must be lit anew
     bool relight_direct; // by lamps, too, rather than by the cache alone
-    bool filling;           // settled but for voxels that a moving level has brought in
+    bool filling;        // settled but for voxels that a moving level has brought in
     bool start_pending;  // the next frame begins a generation of the cache
     bool converged;
     bool unlimited;        // bounces

@@ -1,4 +1,5 @@
-// What glossy surfaces mirror: one cone a pixel, in the tiles that hold such surfaces.
+// What glossy surfaces mirror: one cone a pixel, or for four alike, in the tiles that hold such
+// surfaces.
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
@@ -19,7 +20,11 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
     const struct gpu_program *list =
         voxel_program(frame, pass, "gi/glossy_tiles.comp", "", out_error);
     const struct gpu_program *trace =
-        list ? voxel_program(frame, pass, "gi/indirect_specular.comp", "", out_error) : NULL;
+        list ? voxel_program(frame, pass, "gi/indirect_specular.comp",
+                             frame->params->quality <= QUALITY_INTERACTIVE ? "SHARED 1\n"
+                                                                           : "SHARED 0\n",
+                             out_error)
+             : NULL;
     if (!trace)
         return false;
     if (frame->params->debug_view == DEBUG_VIEW_INDIRECT_SPECULAR)

@@ -4,7 +4,8 @@
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
 
-#define REQUEST_EDGE 4u // as in shaders/gi/cache_request.comp
+#define MOVING_SMOOTH_FRAMES 4u
+#define REQUEST_EDGE         4u // as in shaders/gi/cache_request.comp
 
 static const char *irradiance_cache_skip_reason(const struct frame *frame)
 {
@@ -49,7 +50,9 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
     gpu_barrier(frame->gpu);
     gpu_dispatch_indirect(frame->gpu, march, volume->counters, COUNTER_MARCH * 4);
     gpu_barrier(frame->gpu);
-    gpu_dispatch_indirect(frame->gpu, smooth, volume->counters, COUNTER_LISTS * 4);
+    // Averaging goes over all faces, so while the camera moves it is done now and then.
+    if (!frame->visibility_changed || volume->frame % MOVING_SMOOTH_FRAMES == 0)
+        gpu_dispatch_indirect(frame->gpu, smooth, volume->counters, COUNTER_LISTS * 4);
     return true;
 }
 

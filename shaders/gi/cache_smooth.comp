@@ -48,6 +48,7 @@ void main()
             weight += share;
         }
         sum /= weight;
+        sum.a = max(sum.a, 0.001); // 0 says that nothing is known
         faces[words + FACE_SHOWN] = packHalf2x16(sum.xy);
         faces[words + FACE_SHOWN + 1u] = packHalf2x16(sum.zw);
     }

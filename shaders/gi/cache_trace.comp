@@ -80,6 +80,11 @@ void main()
     vec3 light = min(found.light, vec3(65504.0));
     faces[words + FACE_LIGHT] = packHalf2x16(light.rg);
     faces[words + FACE_LIGHT + 1u] = packHalf2x16(vec2(light.b, found.openness));
+    // Until neighbours are averaged, what is new shows itself.
+    if ((state & FACE_MARCHED) == 0u) {
+        faces[words + FACE_SHOWN] = faces[words + FACE_LIGHT];
+        faces[words + FACE_SHOWN + 1u] = packHalf2x16(vec2(light.b, max(found.openness, 0.001)));
+    }
     uint epoch = MARCH != 0 ? voxels.shape.w : state >> FACE_EPOCH_BIT;
     faces[words + FACE_STATE] = voxels.cache.x |
                                 (relative_change(before, light) << FACE_CHANGE_BIT) | FACE_VALID |

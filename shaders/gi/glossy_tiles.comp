@@ -1,7 +1,7 @@
 // Lists the tiles of GROUP_EDGE^2 pixels that hold a surface whose reflection deserves a cone, for
 // indirect dispatch. In: G-buffer. Out: dispatch arguments and tile numbers, in any order.
 #include "lib/gbuffer.glsl"
-#include "lib/voxel.glsl"
+#include "lib/gloss_rule.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -21,8 +21,7 @@ void main()
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (all(lessThan(pixel, frame.size.xy))) {
         surface s = gbuffer_load(pixel);
-        bool reflects = s.metallic > 0.0 || s.f90 > 0.0;
-        if (s.shading < SHADE_UNLIT && reflects && s.roughness < voxels.light.z)
+        if (s.shading < SHADE_UNLIT && deserves_cone(s))
             atomicOr(any_glossy, 1u);
     }
     barrier();

@@ -1,13 +1,14 @@
-// Adds what glossy surfaces mirror, one cone a pixel, in the tiles that hold any (one group each). In:
+// Adds what glossy surfaces mirror, by cones, in the tiles that hold any (one group each). In:
 // tiles, G-buffer, radiance texture. Out: radiance in cd/m^2.
 #define CONE_SMOOTH 1
 #define CONE_SKIP 1
 #include "lib/gbuffer.glsl"
 #include "lib/environment.glsl"
 #include "lib/gloss.glsl"
+#include "lib/gloss_rule.glsl"
 #include "lib/radiance.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = GROUP_EDGE / 2, local_size_y = GROUP_EDGE / 2) in;
 
 layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 {
@@ -15,23 +16,42 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
     uint tiles[];
 };
 
-void main()
+vec3 mirrored_light(surface s)
 {
-    uint tile = tiles[gl_WorkGroupID.x];
-    uvec2 pixel = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE + gl_LocalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
-        return;
-    surface s = gbuffer_load(pixel);
-    if (s.shading >= SHADE_UNLIT || s.roughness >= voxels.light.z)
-        return;
     vec3 mirror = reflect(-s.view, s.normal);
     // A normal map can turn the mirror ray into the surface.
     mirror += s.geometric_normal * max(0.01 - dot(mirror, s.geometric_normal), 0.0);
-    vec3 light = trace_gloss(s.position, s.geometric_normal, normalize(mirror), s.roughness);
-    float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
-    vec2 scale_bias = environment_brdf(s.roughness, n_v);
-    vec3 f0 = mix(s.f0, s.base_color, s.metallic);
-    float f90 = mix(s.f90, 1.0, s.metallic);
-    vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
-    radiance[pixel_index(pixel)].rgb += reflected * light * (s.occlusion * voxels.light.y);
+    return trace_gloss(s.position, s.geometric_normal, normalize(mirror), s.roughness);
+}
+
+// An invocation takes 2x2 pixels; with SHARED 1 those of about the same normal and roughness take what
+// the first of them has traced.
+void main()
+{
+    uint tile = tiles[gl_WorkGroupID.x];
+    uvec2 first = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE + gl_LocalInvocationID.xy * 2u;
+    vec3 known_normal = vec3(0.0);
+    float known_roughness = 0.0;
+    vec3 light = vec3(0.0);
+    for (uint i = 0u; i < 4u; i++) {
+        uvec2 pixel = first + uvec2(i & 1u, i >> 1);
+        if (any(greaterThanEqual(pixel, frame.size.xy)))
+            continue;
+        surface s = gbuffer_load(pixel);
+        if (s.shading >= SHADE_UNLIT || !deserves_cone(s))
+            continue;
+        bool shared_light = SHARED != 0 && dot(s.normal, known_normal) > 0.99 &&
+                            abs(s.roughness - known_roughness) < 0.1;
+        if (!shared_light) {
+            light = mirrored_light(s);
+            known_normal = s.normal;
+            known_roughness = s.roughness;
+        }
+        float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
+        vec2 scale_bias = environment_brdf(s.roughness, n_v);
+        vec3 f0 = mix(s.f0, s.base_color, s.metallic);
+        float f90 = mix(s.f90, 1.0, s.metallic);
+        vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
+        radiance[pixel_index(pixel)].rgb += reflected * light * (s.occlusion * voxels.light.y);
+    }
 }

@@ -1,7 +1,7 @@
 // What a surface makes of indirect irradiance. The occlusion map applies to this alone, since it
 // stands for detail that neither shadow maps nor voxels hold.
 #include "lib/environment.glsl"
-#include "lib/voxel.glsl"
+#include "lib/gloss_rule.glsl"
 
 // `light`: irradiance / pi in units of the volume's scale, and openness. Radiance in cd/m^2.
 vec3 reflect_irradiance(surface s, vec4 light)
@@ -14,10 +14,9 @@ vec3 reflect_irradiance(surface s, vec4 light)
     float kept = 1.0 - max(layer.r, max(layer.g, layer.b));
     reflectance = s.base_color * ((1.0 - s.metallic) * kept);
 #if INDIRECT_SPECULAR
-    // Lobes that are too wide for a cone of their own see about what the hemisphere sees.
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
-    if (s.roughness >= voxels.light.z)
+    if (!deserves_cone(s))
         reflectance += f0 * scale_bias.x + f90 * scale_bias.y;
 #endif
 #endif

@@ -21,7 +21,7 @@ uint cache_level(vec3 position, out float out_room)
 
 // A surface takes from the faces of each axis that its normal has a share in, so that nothing jumps
 // where the dominant one changes.
-const float LEAST_SHARE = 0.04;
+const float LEAST_SHARE = 0.1;
 
 // Adds irradiance / pi / scale and openness, trilinear between the faces of the eight voxels around a
 // place that look the way of `normal`. `position` is relative to the anchor.
@@ -33,26 +33,36 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
     vec3 shares = normal * normal;
     uint axes = (shares.x > LEAST_SHARE ? 1u : 0u) | (shares.y > LEAST_SHARE ? 2u : 0u) |
                 (shares.z > LEAST_SHARE ? 4u : 0u);
+    // As find_cell(), with what is the same for all eight read once.
+    ivec4 origin = voxels.levels[level].origin;
+    uvec4 index = voxels.levels[level].index;
+    low -= index.z != 0u ? ivec3(0) : origin.xyz;
+    uint record_words = voxels.shape.y;
     for (int i = 0; i < 8; i++) {
         ivec3 step = ivec3(i & 1, (i >> 1) & 1, i >> 2);
-        uint cell = find_cell(level, low + step);
-        if (cell == VOXEL_NONE)
+        uvec3 slot = uvec3((low + step) & (origin.w - 1));
+        uint cell = voxel_index[index.x + (slot.x | (slot.y << index.y) | (slot.z << (2u * index.y)))];
+        if (cell == 0u)
             continue;
+        cell = (cell - 1u) * CELL_WORDS + CELL_FACES;
         vec3 near = mix(1.0 - t, t, vec3(step));
         float share = near.x * near.y * near.z + 1e-4;
         for (uint left = axes; left != 0u; left &= left - 1u) {
             uint axis = uint(findLSB(left));
             float along = axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z;
-            uint words = cell_face(cell, 2u * axis + (along < 0.0 ? 1u : 0u));
-            if (words == VOXEL_NONE)
+            uint record = cells[cell + 2u * axis + (along < 0.0 ? 1u : 0u)];
+            if (record == 0u)
                 continue;
+            uint words = (record - 1u) * record_words;
             uint direction = faces[words + FACE_NORMAL];
-            if (direction == VOXEL_NONE || (faces[words + FACE_STATE] & FACE_VALID) == 0u)
+            if (direction == VOXEL_NONE)
                 continue;
             float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
             facing *= facing;
-            float w = share * facing * facing;
-            sum += w * face_shown_light(words);
+            vec4 light = face_shown_light(words);
+            // Nothing is known yet where not even openness is.
+            float w = light.a > 0.0 ? share * facing * facing : 0.0;
+            sum += w * light;
             weight += w;
         }
     }

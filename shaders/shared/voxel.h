@@ -126,9 +126,10 @@ struct voxel_block {
     uvec4 cache;  // generation, frame, budget of entries, 1 if bounces feed back
     vec4 light;   // reach of ambient occlusion in m, intensity of indirect light, roughness above
                   // which gloss takes the cache's light, widest cone in m
-    vec4 settle; // brightest light of the former generation / scale, pictures in pixels' sums, -, -
-    vec4 march;  // of the cache's cones: step over diameter, start offset in voxels, their number,
-                 // tangent of the half-angle
+    vec4 settle;  // brightest light of the former generation / scale, pictures in pixels' sums,
+                  // reflectance below which gloss takes the cache's light, unused
+    vec4 march;   // of the cache's cones: step over diameter, start offset in voxels, their number,
+                  // tangent of the half-angle
     vec4 pixel_march; // of the cones that start at pixels, likewise
     uvec4 shape; // levels that have cells of their own: those beyond are mips of the last; words of
                  // a face record; their capacity; epoch of geometry

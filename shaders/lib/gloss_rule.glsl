@@ -1,0 +1,11 @@
+// Whether a surface mirrors sharply and strongly enough for a cone of its own; others see about what
+// the hemisphere sees. Both limits are the quality level's.
+#include "lib/surface.glsl"
+#include "lib/voxel.glsl"
+
+bool deserves_cone(surface s)
+{
+    float f0 = mix(max(s.f0.r, max(s.f0.g, s.f0.b)), 1.0, s.metallic);
+    return s.roughness < voxels.light.z && (s.metallic > 0.0 || s.f90 > 0.0) &&
+           f0 >= voxels.settle.z;
+}
