@@ -64,10 +64,10 @@ static bool create_pools(struct voxel_volume *volume)
 static struct gpu_texture *create_texture(const struct voxel_volume *volume)
 {
     uint32_t outer = volume->params.edge + 2;
-    uint32_t mips = volume->level_count - volume->lit_levels;
     uint32_t height = outer * volume->lit_levels + outer / 2 + 1;
-    // Mip levels lie side by side: their widths add up to less than the others' but for borders.
-    uint32_t width = volume->face_count * (outer + 2 * mips);
+    // Mip levels lie side by side: halves, quarters and so on down to 8 voxels, with their borders,
+    // are together no wider than the finest level.
+    uint32_t width = volume->face_count * outer;
     return gpu_texture_create(volume->gpu, &(struct gpu_texture_params){
                                                .label = "gi.radiance",
                                                .format = GPU_FORMAT_RGBA16F,
@@ -369,6 +369,12 @@ bool voxel_volume_update(struct voxel_volume *volume, const struct resident *res
     return voxel_volume_prepare_work(volume, resident);
 }
 
+static void grow_if_full(uint32_t *capacity, uint32_t used)
+{
+    if (used >= *capacity)
+        *capacity += *capacity / 2;
+}
+
 enum voxel_room voxel_volume_check_room(struct voxel_volume *volume)
 {
     uint32_t counters[COUNTER_LISTS];
@@ -378,12 +384,9 @@ enum voxel_room voxel_volume_check_room(struct voxel_volume *volume)
     if (!counters[COUNTER_OVERFLOW])
         return VOXEL_ROOM_ENOUGH;
     free_pools(volume);
-    // The counters went on counting beyond the capacity, so they tell how much is needed at least.
-    uint32_t cells = counters[COUNTER_CELLS], surfels = counters[COUNTER_SURFELS];
     if (counters[COUNTER_OVERFLOW] & OVERFLOW_POOLS) {
-        volume->cell_capacity = 2 * (cells > volume->cell_capacity ? cells : volume->cell_capacity);
-        volume->surfel_capacity =
-            2 * (surfels > volume->surfel_capacity ? surfels : volume->surfel_capacity);
+        grow_if_full(&volume->cell_capacity, counters[COUNTER_CELLS]);
+        grow_if_full(&volume->surfel_capacity, counters[COUNTER_SURFELS]);
     }
     // From one and a half a cell to six, beyond which none has.
     if (counters[COUNTER_OVERFLOW] & OVERFLOW_FACES && volume->face_growth < 2)
