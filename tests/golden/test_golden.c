@@ -28,6 +28,7 @@ struct golden {
     char camera[64]; // "" for the first
     enum debug_view view;
     enum quality quality;
+    enum gi_method gi_method;
 };
 
 static const char *const golden_folder = VOXCAST_SOURCE_DIR "/tests/golden/pictures";
@@ -42,6 +43,7 @@ static uint8_t *render(struct renderer *renderer, const struct golden *golden)
                                   .debug_view = golden->view,
                                   .output = FRAME_OUTPUT_RGBA8};
     render_settings_init(&params.settings);
+    params.settings.gi_method = golden->gi_method;
     uint8_t *rgb = NULL;
     struct view *view = renderer_view_create(renderer);
     struct scene *scene = scene_load(golden->scene, &error);
@@ -55,13 +57,18 @@ static uint8_t *render(struct renderer *renderer, const struct golden *golden)
                                params.camera.up);
     params.camera.fov_y_rad = scene->cameras[camera].fov_y_rad;
     struct frame_pixels pixels;
-    if (renderer_view_draw(renderer, view, &params, &error) != RENDER_DRAWN ||
-        !renderer_view_collect(renderer, view, true, &pixels))
-        goto done;
+    enum render_result result;
     rgb = malloc((size_t)WIDTH * HEIGHT * 3);
-    for (uint32_t i = 0; rgb && i < WIDTH * HEIGHT; i++)
-        memcpy(rgb + 3 * (size_t)i, pixels.planes[0] + 4 * (size_t)i, 3);
-    renderer_view_release(renderer, view);
+    while (rgb && (result = renderer_view_draw(renderer, view, &params, &error)) == RENDER_DRAWN &&
+           renderer_view_collect(renderer, view, true, &pixels)) {
+        for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
+            memcpy(rgb + 3 * (size_t)i, pixels.planes[0] + 4 * (size_t)i, 3);
+        renderer_view_release(renderer, view);
+    }
+    if (rgb && result != RENDER_UNCHANGED) {
+        free(rgb);
+        rgb = NULL;
+    }
 done:
     if (!rgb)
         fprintf(stderr, "%s: %s\n", golden->name, error.message);
@@ -137,7 +144,8 @@ static uint32_t list_goldens(struct golden *goldens, uint32_t capacity)
         snprintf(golden->name, sizeof(golden->name), "%s", scene_builtin_name(i));
         snprintf(golden->scene, sizeof(golden->scene), "builtin:%s", scene_builtin_name(i));
     }
-    for (int view = DEBUG_VIEW_FINAL + 1; view < DEBUG_VIEW_COUNT && count < capacity; view++) {
+    for (int view = DEBUG_VIEW_FINAL + 1; view < DEBUG_VIEW_VOXEL_OPACITY && count < capacity;
+         view++) {
         // Materials show best among the objects; tiles and cascades need their kinds of lights.
         const char *scene = "cornell-objects";
         if (view == DEBUG_VIEW_LIGHTS_PER_TILE)
@@ -148,6 +156,16 @@ static uint32_t list_goldens(struct golden *goldens, uint32_t capacity)
         *golden = (struct golden){.view = (enum debug_view)view, .quality = QUALITY_FINAL};
         snprintf(golden->name, sizeof(golden->name), "view-%s", debug_view_names[view]);
         snprintf(golden->scene, sizeof(golden->scene), "builtin:%s", scene);
+    }
+    static const struct golden lit[] = {
+        {"gi-cornell", "builtin:cornell", .gi_method = GI_METHOD_GRID},
+        {"gi-cornell-objects", "builtin:cornell-objects", .gi_method = GI_METHOD_CLIPMAP},
+        {"gi-atrium", "builtin:atrium", .gi_method = GI_METHOD_CLIPMAP},
+        {"gi-material-grid", "builtin:material-grid", .gi_method = GI_METHOD_GRID},
+    };
+    for (size_t i = 0; i < sizeof(lit) / sizeof(lit[0]) && count < capacity; i++) {
+        goldens[count] = lit[i];
+        goldens[count++].quality = QUALITY_INTERACTIVE;
     }
     if (count < capacity)
         goldens[count++] = (struct golden){

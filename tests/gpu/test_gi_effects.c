@@ -64,6 +64,7 @@ static void stage_init(struct stage *stage, struct scene *scene, enum gi_method 
     assert_non_null(stage->view);
     stage->params = gi_params(32, 32, method);
     stage->params.settings.soft_shadows = true;
+    stage->params.quality = QUALITY_HIGH; // lower ones leave soft shadows out
     test_look_down_z(&stage->params, 3.0f);
 }
 
