@@ -12,7 +12,7 @@
 // Behind the pixels in a ring buffer: the exposure that was found automatically.
 #define VIEW_EXPOSURE_BYTES 16u
 // Behind that: what the counters of the volume said (struct voxel_light_report).
-#define VIEW_REPORT_BYTES 16u
+#define VIEW_REPORT_BYTES 24u
 
 struct ring_frame {
     struct gpu_buffer *pixels;

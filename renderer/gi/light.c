@@ -132,9 +132,13 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
                          const struct voxel_light_report *report, double trace_ms)
 {
     struct voxel_light_state *light = &volume->light;
+    // Faces without a record stay dark: make room, and voxelize anew.
+    if (report->overflow & OVERFLOW_FACES)
+        volume->faces_full = true;
     if (report->traced >= MIN_BUDGET / 2 && trace_ms > 0.0)
         light->entry_ms = trace_ms / report->traced;
-    if (generation != light->generation || light->start_pending || light->converged)
+    if (generation != light->generation || light->start_pending || light->converged ||
+        volume->faces_full)
         return;
     light->left = report->left;
     light->quiet_frames = report->left == 0 && report->traced == 0 ? light->quiet_frames + 1 : 0;

@@ -340,6 +340,18 @@ static bool remember_all_instances(struct voxel_volume *volume, const struct res
     return volume->instances != NULL;
 }
 
+// A cell has up to six faces, most have fewer than two.
+static bool make_room_for_faces(struct voxel_volume *volume)
+{
+    volume->faces_full = false;
+    if (volume->face_growth >= 2)
+        return true;
+    volume->face_growth++;
+    volume->everything = true;
+    free_pools(volume);
+    return create_pools(volume);
+}
+
 bool voxel_volume_update(struct voxel_volume *volume, const struct resident *resident,
                          const float eye[3])
 {
@@ -349,6 +361,8 @@ bool voxel_volume_update(struct voxel_volume *volume, const struct resident *res
     if (geometry || (transforms && !covers_scene(volume, resident)))
         if (!lay_out(volume, resident))
             return false;
+    if (volume->faces_full && !make_room_for_faces(volume))
+        return false;
     struct voxel_box before[VOXEL_MAX_LEVELS], kept[VOXEL_MAX_LEVELS];
     for (uint32_t i = 0; i < volume->level_count; i++)
         before[i] = volume->levels[i].box;

@@ -94,6 +94,7 @@ struct voxel_volume {
 
     // What must be voxelized next.
     bool laid_out;
+    bool faces_full; // the pool of face records was too small
     bool everything; // all voxels anew
     uint32_t region_count;
     uint32_t region_voxels;

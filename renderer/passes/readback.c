@@ -15,7 +15,7 @@ static bool readback_run(struct frame *frame, const struct pass *pass, struct er
                     VIEW_EXPOSURE_BYTES);
     if (frame->volume)
         gpu_buffer_copy(view->ring[view->ring_next].pixels, bytes + VIEW_EXPOSURE_BYTES,
-                        frame->volume->counters, COUNTER_CACHE_LEFT * 4, VIEW_REPORT_BYTES);
+                        frame->volume->counters, COUNTER_OVERFLOW * 4, VIEW_REPORT_BYTES);
     return true;
 }
 

@@ -104,6 +104,8 @@ static const char *shadow_map_skip_reason(const struct frame *frame)
 {
     if (!(frame->plan.bits & EFFECT_BIT(EFFECT_SHADOWS)))
         return "no light casts a shadow";
+    if (frame->resident->counts.lit_materials == 0 && !frame->params->settings.force_all_effects)
+        return "every surface is unlit";
     return any_stale(frame) ? NULL : "lights and casters unchanged";
 }
 

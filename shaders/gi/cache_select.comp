@@ -65,11 +65,11 @@ void main()
     }
 }
 #else
-uint count_classes(uint first, uint end)
+uint count_classes(uint first, uint end, uint most)
 {
     uint total = 0u;
     for (uint i = first; i < end; i++)
-        total += min(counters[COUNTER_CACHE_CLASSES + i], voxels.options.x);
+        total += min(counters[COUNTER_CACHE_CLASSES + i], most);
     return total;
 }
 
@@ -87,14 +87,16 @@ void main()
         return;
     // The budget is in faces to march. Looking up hits is cheap and shows an edit everywhere, so it
     // has the first claim, but for a quarter.
-    uint to_march = count_classes(0u, CACHE_MARCH_CLASSES);
-    uint to_gather = count_classes(CACHE_MARCH_CLASSES, CACHE_CLASSES);
+    uint to_march = count_classes(0u, CACHE_MARCH_CLASSES, voxels.options.x);
+    uint to_gather = count_classes(CACHE_MARCH_CLASSES, CACHE_CLASSES, voxels.options.x);
     uint budget = voxels.cache.z;
     uint gathered = min(to_gather, (budget - min(to_march, budget / 4u)) * CACHE_MARCH_COST);
     uint marched = min(to_march, budget - gathered / CACHE_MARCH_COST);
     set_arguments(COUNTER_MARCH, marched);
     set_arguments(COUNTER_GATHER, gathered);
-    counters[COUNTER_CACHE_LEFT] = to_march - marched + to_gather - gathered;
+    // Those that the queue had no room for are left, too.
+    counters[COUNTER_CACHE_LEFT] =
+        count_classes(0u, CACHE_CLASSES, 0xffffffffu) - marched - gathered;
     counters[COUNTER_CACHE_TRACED] = marched * CACHE_MARCH_COST + gathered;
 }
 #endif

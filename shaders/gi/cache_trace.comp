@@ -64,16 +64,24 @@ void main()
     float angle = float(odd.x + 2 * odd.y + 4 * odd.z) * (PI / 4.0);
     gather_cones g = begin_gather(position, normal, vec2(cos(angle), sin(angle)));
     gathered found = no_light();
+#if MARCH
+    gathered along = no_light();
+#endif
     for (uint i = 0u; i < uint(voxels.march.z); i++) {
 #if MARCH
         uint hit;
-        add_cone(g, i, found, hit);
+        add_cone(g, i, along, hit);
         faces[words + FACE_WORDS + i] = hit;
+        // What counts is the light at the hit, as it is for faces that are not marched anew: so the
+        // result does not depend on which frame a face was marched in.
+        add_cone_at_hit(g, i, hit, found);
 #else
         add_cone_at_hit(g, i, faces[words + FACE_WORDS + i], found);
 #endif
     }
-#if !MARCH
+#if MARCH
+    found.openness = along.openness;
+#else
     found.openness = face_light(words).a;
 #endif
     vec3 before = face_light(words).rgb;
