@@ -154,11 +154,18 @@ static float radiance_scale(const struct resident *resident, const struct voxel_
     return exp2f(ceilf(log2f(brightest / STORED_PEAK)));
 }
 
-static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
+static uint64_t hash_word(uint64_t hash, uint64_t word)
 {
-    const unsigned char *bytes = data;
-    for (size_t i = 0; i < size; i++)
-        hash = (hash ^ bytes[i]) * 1099511628211ull;
+    return (hash ^ word) * 1099511628211ull;
+}
+
+static uint64_t hash_vector(uint64_t hash, const vec4 vector)
+{
+    for (int i = 0; i < 4; i++) {
+        uint32_t bits;
+        memcpy(&bits, &vector[i], sizeof(bits));
+        hash = hash_word(hash, bits);
+    }
     return hash;
 }
 
@@ -178,8 +185,10 @@ static uint64_t light_key(const struct frame *frame, const struct voxel_volume *
         frame_has(frame, EFFECT_BOUNCE),
         frame_has(frame, EFFECT_SOFT_SHADOWS),
     };
-    uint64_t hash = hash_bytes(1469598103934665603ull, words, sizeof(words));
-    return hash_bytes(hash, &volume->uniforms.march, sizeof(volume->uniforms.march));
+    uint64_t hash = 1469598103934665603ull;
+    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+        hash = hash_word(hash, words[i]);
+    return hash_vector(hash, volume->uniforms.march);
 }
 
 static void fill_march(struct voxel_volume *volume, enum cone_set set, float step, vec4 out_march,
@@ -235,10 +244,9 @@ static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
         view->still_count = 0;
         return;
     }
-    uint64_t key =
-        hash_bytes(volume->light.version, &block->pixel_march, sizeof(block->pixel_march));
-    key = hash_bytes(key, &view->volume_serial, sizeof(view->volume_serial));
-    key = hash_bytes(key, &frame->gather, sizeof(frame->gather));
+    uint64_t key = hash_vector(volume->light.version, block->pixel_march);
+    key = hash_word(key, view->volume_serial);
+    key = hash_word(key, (uint64_t)frame->gather);
     if (frame->visibility_changed || frame->light_work.voxelize || key != view->gathered_key)
         view->still_count = 0;
     view->gathered_key = key;
