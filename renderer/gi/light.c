@@ -4,12 +4,13 @@
 #include <string.h>
 
 // Time that a frame may spend on cones of the cache, on a CPU: little while the camera moves.
-#define MOVING_TRACE_MS 7.0
-#define STILL_TRACE_MS  45.0
-#define FIRST_ENTRY_MS  0.006
-#define MIN_BUDGET      256.0
-#define MAX_BUDGET      1e6
-#define GPU_BUDGET      131072u
+#define MOVING_TRACE_MS  10.0
+#define STILL_TRACE_MS   120.0
+#define FIRST_ENTRY_MS   0.006
+#define MIN_BUDGET       256.0
+#define MIN_STILL_BUDGET 6000.0
+#define MAX_BUDGET       1e6
+#define GPU_BUDGET       131072u
 // Light has settled when what is still to come, a geometric series, is less than this share of any
 // voxel face's light.
 #define SETTLED_REST    0.008f
@@ -45,7 +46,9 @@ static double entry_budget(const struct voxel_volume *volume,
         return GPU_BUDGET;
     double entry_ms = volume->light.entry_ms > 0.0 ? volume->light.entry_ms : FIRST_ENTRY_MS;
     double budget = (params->camera_moved ? MOVING_TRACE_MS : STILL_TRACE_MS) / entry_ms;
-    return fmin(fmax(budget, MIN_BUDGET), MAX_BUDGET);
+    // The measured time holds what every frame pays, so that it must not be trusted to shrink
+    // budgets without end.
+    return fmin(fmax(budget, params->camera_moved ? MIN_BUDGET : MIN_STILL_BUDGET), MAX_BUDGET);
 }
 
 static void plan_relight(struct voxel_volume *volume, const struct voxel_light_params *params,
@@ -135,8 +138,9 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     // Faces without a record stay dark: make room, and voxelize anew.
     if (report->overflow & OVERFLOW_FACES)
         volume->faces_full = true;
-    if (report->traced >= MIN_BUDGET / 2 && trace_ms > 0.0)
-        light->entry_ms = trace_ms / report->traced;
+    // Counted in faces to gather; budgets are in faces to march.
+    if (report->traced >= MIN_BUDGET * CACHE_MARCH_COST / 2 && trace_ms > 0.0)
+        light->entry_ms = CACHE_MARCH_COST * trace_ms / report->traced;
     if (generation != light->generation || light->start_pending || light->converged ||
         volume->faces_full)
         return;
