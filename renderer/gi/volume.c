@@ -40,6 +40,11 @@ static uint32_t face_words(const struct voxel_volume *volume)
     return FACE_WORDS + volume->params.cache_cones;
 }
 
+static uint32_t face_capacity(const struct voxel_volume *volume)
+{
+    return (volume->cell_capacity + volume->cell_capacity / 2) << volume->face_growth;
+}
+
 static bool create_pools(struct voxel_volume *volume)
 {
     size_t cells = volume->cell_capacity, surfels = volume->surfel_capacity;
@@ -51,10 +56,9 @@ static bool create_pools(struct voxel_volume *volume)
     volume->list_words = volume->level_count * cells + volume->mip_words;
     volume->cells = make(volume, "gi.cells", cells * CELL_WORDS);
     volume->surfels = make(volume, "gi.surfels", surfels * SURFEL_WORDS);
-    volume->face_capacity = (volume->cell_capacity + volume->cell_capacity / 2)
-                            << volume->face_growth;
+    volume->face_capacity = face_capacity(volume);
     volume->faces = make(volume, "gi.faces", (size_t)volume->face_capacity * face_words(volume));
-    volume->free_list = make(volume, "gi.free", cells + 2 * surfels + volume->face_capacity);
+    volume->free_list = make(volume, "gi.free", cells + 2 * surfels + VOXEL_FACES * cells);
     volume->lists = make(volume, "gi.lists", volume->list_words);
     volume->queue = make(volume, "gi.queue", cells * CACHE_CLASSES);
     return volume->cells && volume->surfels && volume->faces && volume->free_list &&
@@ -340,16 +344,27 @@ static bool remember_all_instances(struct voxel_volume *volume, const struct res
     return volume->instances != NULL;
 }
 
-// A cell has up to six faces, most have fewer than two.
+// A cell has up to six faces, most have fewer than two. Those that have records keep them; lighting
+// makes the missing ones.
 static bool make_room_for_faces(struct voxel_volume *volume)
 {
     volume->faces_full = false;
     if (volume->face_growth >= 2)
         return true;
     volume->face_growth++;
-    volume->everything = true;
-    free_pools(volume);
-    return create_pools(volume);
+    uint32_t used = volume->face_capacity;
+    struct gpu_buffer *old = volume->faces;
+    volume->face_capacity = face_capacity(volume);
+    volume->faces = make(volume, "gi.faces", (size_t)volume->face_capacity * face_words(volume));
+    if (volume->faces) {
+        gpu_buffer_copy(volume->faces, 0, old, 0, (size_t)used * face_words(volume) * 4);
+        gpu_buffer_fill(volume->counters, COUNTER_FACES * 4, 4, used);
+        gpu_buffer_fill(volume->counters, COUNTER_OVERFLOW * 4, 4, 0);
+    }
+    gpu_buffer_destroy(&old);
+    volume->light.relight = true;
+    volume->light.relight_direct = true;
+    return volume->faces != NULL;
 }
 
 bool voxel_volume_update(struct voxel_volume *volume, const struct resident *resident,
