@@ -168,6 +168,7 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     light->converged =
         light->bounce >= light->needed || (light->unlimited && light->rest < SETTLED_REST);
     light->start_pending = !light->converged;
+    light->settled_once = light->settled_once || light->converged;
     light->version++;
     // Cones that gather for pixels shall see the last bounce, too.
     light->relight = true;

@@ -344,14 +344,20 @@ static bool remember_all_instances(struct voxel_volume *volume, const struct res
     return volume->instances != NULL;
 }
 
-// A cell has up to six faces, most have fewer than two. Those that have records keep them; lighting
-// makes the missing ones.
+// A cell has up to six faces, most have fewer than two. Once light has settled, those that have
+// records keep them and lighting makes the missing ones; before, all start over, so that the result
+// does not depend on what had been traced.
 static bool make_room_for_faces(struct voxel_volume *volume)
 {
     volume->faces_full = false;
     if (volume->face_growth >= 2)
         return true;
     volume->face_growth++;
+    if (!volume->light.settled_once) {
+        volume->everything = true;
+        free_pools(volume);
+        return create_pools(volume);
+    }
     uint32_t used = volume->face_capacity;
     struct gpu_buffer *old = volume->faces;
     volume->face_capacity = face_capacity(volume);

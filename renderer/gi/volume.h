@@ -39,6 +39,7 @@ struct voxel_light_state {
     bool relight;        // voxels must be lit anew
     bool relight_direct; // by lamps, too, rather than by the cache alone
     bool filling;        // settled but for voxels that a moving level has brought in
+    bool settled_once;   // since the volume was made
     bool start_pending;  // the next frame begins a generation of the cache
     bool converged;
     bool unlimited;        // bounces

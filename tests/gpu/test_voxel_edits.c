@@ -49,6 +49,10 @@ static void begin(struct edited *edited, enum gi_method method)
     gi_scene_camera(edited->scene, &edited->params.camera);
     assert_true(voxelizes(edited));
     assert_false(voxelizes(edited));
+    // Until light has settled for the first time, lack of room may start everything over.
+    struct test_picture picture = {0};
+    assert_true(gi_converge(edited->renderer, edited->view, &edited->params, &picture) > 0);
+    gi_picture_finish(&picture);
 }
 
 static void end(struct edited *edited)
