@@ -38,6 +38,8 @@ describe('a server that goes away', () => {
     daemon = await startDaemon(['--scene', 'builtin:cornell', '--port', String(daemon.port)]);
     await page.locator('#connection[data-state=open]').waitFor({ timeout: 15000 });
     assert.equal(await state.innerText(), 'Connected');
+    // As openClient() does: the new server lights indirectly again.
+    await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }));
     await untilStill(page, 1000);
     assert.equal(await page.locator('[data-light]').count(), 0, 'the new server has no such light');
     assert.ok(difference(turned, await pixels(page)) < 1, 'the camera stays where it was');
