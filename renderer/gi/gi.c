@@ -169,7 +169,8 @@ static uint64_t hash_vector(uint64_t hash, const vec4 vector)
     return hash;
 }
 
-// Of everything that the light in voxels depends on.
+// Of everything that the light in voxels depends on; nothing of a view's quality, since views of
+// different quality share a volume and would set it back in turns.
 static uint64_t light_key(const struct frame *frame, const struct voxel_volume *volume)
 {
     const struct render_settings *settings = &frame->params->settings;
@@ -183,7 +184,6 @@ static uint64_t light_key(const struct frame *frame, const struct voxel_volume *
         settings->bounces,
         settings->shadows,
         frame_has(frame, EFFECT_BOUNCE),
-        frame_has(frame, EFFECT_SOFT_SHADOWS),
     };
     uint64_t hash = 1469598103934665603ull;
     for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
