@@ -10,6 +10,9 @@
 // Stored radiance of the brightest lit surface should lie about here, far from either end of what
 // half floats hold.
 #define STORED_PEAK 256.0f
+// So much brighter or darker than when the scale was chosen, radiance is still stored well.
+#define SCALE_GROWTH 8.0f
+#define SCALE_DECAY  64.0f
 // Ambient occlusion counts what is nearer than this share of the scene's diagonal.
 #define OCCLUSION_SHARE 0.05f
 // Cones start so many voxels above the surface.
@@ -123,35 +126,37 @@ static struct gi_volume *find_volume(struct gi *gi, const struct frame *frame,
     return added;
 }
 
-static float luminance_of(const float color[3])
+static float brightest_channel(const float color[3])
 {
     return fmaxf(color[0], fmaxf(color[1], color[2]));
 }
 
 // A power of two that radiance is divided by, so that half floats hold it: from the illuminance
 // that lights bring to surfaces some voxels away, from emission and from the environment.
-static float radiance_scale(const struct resident *resident, const struct voxel_volume *volume)
+// Kept while it still suits, since what is stored was divided by it.
+static float radiance_scale(const struct resident *resident, float before)
 {
     const struct scene *scene = resident->scene;
     float brightest = 0.0f;
     float near = 0.05f * resident->diagonal_m;
-    (void)volume;
     for (uint32_t i = 0; i < scene->light_count; i++) {
         const struct scene_light *light = &scene->lights[i];
         if (light->removed || !light->enabled)
             continue;
-        float intensity = light->intensity * luminance_of(light->color) / (float)GLM_PI;
+        float intensity = light->intensity * brightest_channel(light->color) / (float)GLM_PI;
         bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
         brightest = fmaxf(brightest, directional ? intensity : intensity / (near * near));
     }
     for (uint32_t i = 0; i < scene->material_count; i++)
-        brightest = fmaxf(brightest, luminance_of(scene->materials[i].emissive) *
+        brightest = fmaxf(brightest, brightest_channel(scene->materials[i].emissive) *
                                          scene->materials[i].emissive_strength);
     if (scene->environment.type != SCENE_ENVIRONMENT_NONE)
         brightest = fmaxf(brightest, scene->environment.intensity);
     if (!(brightest > 0.0f) || !isfinite(brightest))
         return 1.0f;
-    return exp2f(ceilf(log2f(brightest / STORED_PEAK)));
+    float scale = exp2f(ceilf(log2f(brightest / STORED_PEAK)));
+    bool suits = before > 0.0f && scale <= before * SCALE_GROWTH && scale >= before / SCALE_DECAY;
+    return suits ? before : scale;
 }
 
 static uint64_t hash_word(uint64_t hash, uint64_t word)
@@ -282,7 +287,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
     frame->volume = volume;
     frame->view->volume_serial = found->serial;
     fill_cones(frame, volume);
-    volume->scale = radiance_scale(frame->resident, volume);
+    volume->scale = radiance_scale(frame->resident, volume->scale);
     struct voxel_light_params light = {
         .key = light_key(frame, volume),
         .bounces = settings->bounces,

@@ -1,5 +1,6 @@
-// Adds indirect diffuse light, or writes it where it is shown ALONE. In: G-buffer; irradiance cache (GATHER 0), or what pixels have gathered
-// themselves, every one (1) or every fourth (2). Out: radiance in cd/m^2.
+// Adds indirect diffuse light, or writes it where it is shown ALONE. In: G-buffer; irradiance cache
+// (GATHER 0), or what pixels have gathered themselves, every one (1) or every fourth (2). Out: radiance
+// in cd/m^2.
 //
 // From the cache, an invocation takes 2x2 pixels: irradiance changes little between them, so that it is
 // looked up once and again only for pixels that lie on another surface.

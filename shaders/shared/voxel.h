@@ -26,8 +26,8 @@
 #define CELL_SLOT_MASK 0x0fffffffu
 
 // A record of the irradiance cache: a voxel face that has a surface. Its words, and behind them one
-// for each cone: where it hits (distance in voxels of the finest level) and the share that leaves
-// the volume, as halves. So long as geometry stays, a cone's light is one look-up there.
+// for each cone: where it hits, what leaves the volume, and how wide it was there (as add_cone() of
+// shaders/lib/gather.glsl packs them). So long as geometry stays, a cone's light is one look-up.
 #define FACE_WORDS      12u // before the cones
 #define FACE_NORMAL     0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: no surface any more
 #define FACE_PLACE      1u  // mean, within the voxel, 3 x 10 bits
@@ -67,7 +67,7 @@
 #define COUNTER_SURFELS          2
 #define COUNTER_FREE_SURFELS     3
 #define COUNTER_RETURNED_SURFELS 4
-#define COUNTER_OVERFLOW         5 // bits; OVERFLOW_FACES is seen by the next voxelization
+#define COUNTER_OVERFLOW         5 // bits, as OVERFLOW_ says
 #define COUNTER_CACHE_LEFT       7 // faces that the newest selection left stale
 #define COUNTER_CACHE_CHANGE     8 // largest relative change of a face this generation (float)
 #define COUNTER_CACHE_TRACED     9
