@@ -1,7 +1,7 @@
 // The lights of a scene as the reference path tracer samples them: punctual lights as
 // KHR_lights_punctual defines them, every emissive triangle, and the environment.
-#ifndef VOXCAST_TESTS_GPU_SUPPORT_PATH_LIGHTS_H
-#define VOXCAST_TESTS_GPU_SUPPORT_PATH_LIGHTS_H
+#ifndef VOXCAST_RENDERER_REFERENCE_PATH_LIGHTS_H
+#define VOXCAST_RENDERER_REFERENCE_PATH_LIGHTS_H
 
 #include "renderer/scene/ray_scene.h"
 

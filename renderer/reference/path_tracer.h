@@ -1,7 +1,7 @@
 // The reference: an unbiased Monte Carlo path tracer on the CPU, in double precision, that shares
 // with the renderer nothing but the scene document, the camera and the ray casts.
 //
-// Surfaces are Lambertian under GGX (see support_path_brdf.h). Lights are punctual lights as
+// Surfaces are Lambertian under GGX (see path_brdf.h). Lights are punctual lights as
 // points, every emissive triangle, and the environment. A path's vertex samples lights directly and
 // follows one ray by what the surface reflects; emitters are found both ways, weighted by the
 // balance heuristic (Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation").
@@ -10,8 +10,8 @@
 // other rays stop there and find black, since what casts a shadow in the renderer blocks light
 // from both sides, and a side that is never shown has no colour. Blended and transmissive surfaces
 // let light pass straight through in proportion, and cast no shadow.
-#ifndef VOXCAST_TESTS_GPU_SUPPORT_PATH_TRACER_H
-#define VOXCAST_TESTS_GPU_SUPPORT_PATH_TRACER_H
+#ifndef VOXCAST_RENDERER_REFERENCE_PATH_TRACER_H
+#define VOXCAST_RENDERER_REFERENCE_PATH_TRACER_H
 
 #include "renderer/scene/scene.h"
 #include "renderer/settings.h"

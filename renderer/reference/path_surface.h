@@ -3,8 +3,8 @@
 // Sides are those of the rasteriser: the front is the side from which the corners run
 // counter-clockwise, mirrored placements included. The back of a single-sided surface is never
 // shown to the camera; whoever follows a ray decides what it is to that ray.
-#ifndef VOXCAST_TESTS_GPU_SUPPORT_PATH_SURFACE_H
-#define VOXCAST_TESTS_GPU_SUPPORT_PATH_SURFACE_H
+#ifndef VOXCAST_RENDERER_REFERENCE_PATH_SURFACE_H
+#define VOXCAST_RENDERER_REFERENCE_PATH_SURFACE_H
 
 #include "renderer/scene/ray_scene.h"
 

@@ -1,4 +1,4 @@
-#include "support_path_brdf.h"
+#include "renderer/reference/path_brdf.h"
 
 #include "renderer/scene/vector3.h"
 

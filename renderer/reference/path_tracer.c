@@ -1,4 +1,4 @@
-#include "support_path_tracer.h"
+#include "renderer/reference/path_tracer.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -7,9 +7,9 @@
 
 #include "renderer/camera.h"
 #include "renderer/scene/vector3.h"
-#include "support_path_brdf.h"
-#include "support_path_lights.h"
-#include "support_path_surface.h"
+#include "renderer/reference/path_brdf.h"
+#include "renderer/reference/path_lights.h"
+#include "renderer/reference/path_surface.h"
 
 #define MAX_THREADS      16u
 #define RAY_MAX_DISTANCE 1e15

@@ -1,10 +1,10 @@
-#include "support_path_lights.h"
+#include "renderer/reference/path_lights.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "renderer/scene/vector3.h"
-#include "support_path_surface.h"
+#include "renderer/reference/path_surface.h"
 
 // The renderer's: nearer than this to a light (1 mm) the inverse square no longer grows.
 #define MIN_LIGHT_DISTANCE_SQUARED 1e-6

@@ -1,4 +1,4 @@
-#include "support_path_surface.h"
+#include "renderer/reference/path_surface.h"
 
 #include <string.h>
 

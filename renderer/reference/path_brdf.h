@@ -1,10 +1,10 @@
 // How a surface of the reference path tracer reflects: Lambert under a GGX layer, as glTF 2.0,
 // appendix B, defines it and the renderer's shaders/lib/brdf.glsl evaluates it; written anew, with
 // random directions besides. Blinn-Phong materials are taken as GGX of the same roughness.
-#ifndef VOXCAST_TESTS_GPU_SUPPORT_PATH_BRDF_H
-#define VOXCAST_TESTS_GPU_SUPPORT_PATH_BRDF_H
+#ifndef VOXCAST_RENDERER_REFERENCE_PATH_BRDF_H
+#define VOXCAST_RENDERER_REFERENCE_PATH_BRDF_H
 
-#include "support_path_surface.h"
+#include "renderer/reference/path_surface.h"
 
 struct path_reflection {
     double share[3]; // BRDF times cosine, per steradian; 0 behind the surface
