@@ -8,7 +8,7 @@
 
 #include "renderer/scene/scene_load.h"
 #include "server/cli.h"
-#include "renderer/reference/path_tracer.h"
+#include "support_path.h"
 
 static const char usage[] =
     "usage: reference_picture SCENE --out PREFIX [OPTIONS]\n"
