@@ -8,8 +8,10 @@
 #include "renderer/reference/sampler.h"
 
 #define RAY_MAX_DISTANCE 1e15f
-// Rays start this far off a surface, in diagonals of the scene.
-#define RAY_OFFSET 1e-5f
+// Rays start this far off a surface: some units in the last place of its coordinates, and of the
+// longest rays that may have found it.
+#define OFFSET_OF_PLACE    2e-6f
+#define OFFSET_OF_DIAGONAL 4e-7f
 // Surfaces that one ray may pass through, and vertices that a path may have, unlikely as they are.
 #define MAX_LAYERS   64u
 #define MAX_VERTICES 4096u
@@ -74,7 +76,6 @@ void path_setup_init(struct path_setup *setup, const struct reference_params *pa
             by_light && shines && (by_light_alone || environment_is_uneven(snapshot->environment)),
         .finds_light = !by_light_alone,
         .rays_find = !by_light_alone && (emits || shines),
-        .offset_m = RAY_OFFSET * snapshot->diagonal_m,
     };
     for (int axis = 0; axis < 3; axis++)
         setup->eye[axis] = (float)(params->camera.eye[axis] - snapshot->origin[axis]);
@@ -122,9 +123,17 @@ static void add_light(struct path *path, float3 radiance, uint32_t reflections,
     path->layers[layer] += path->throughput * radiance;
 }
 
+static float offset_at(const struct path *path, float3 position)
+{
+    float largest = fmaxf(fabsf(position[0]), fmaxf(fabsf(position[1]), fabsf(position[2])));
+    return OFFSET_OF_PLACE * largest + OFFSET_OF_DIAGONAL * path->setup->snapshot->diagonal_m;
+}
+
+// The point just off a surface, on its ray's side (1) or beyond (-1).
 static float3 step_off(const struct path *path, const struct surface *surface, float side)
 {
-    return surface->position + surface->geometric_normal * (side * path->setup->offset_m);
+    return surface->position +
+           surface->geometric_normal * (side * offset_at(path, surface->position));
 }
 
 // What the body that the path is in leaves of light over a distance.
@@ -159,10 +168,10 @@ static bool cast(struct path *path, struct surface *out_surface, float *out_dist
 static bool passes(struct path *path, const struct surface *surface, uint32_t layer)
 {
     const struct material *material = surface->material;
-    if (!material->lets_through)
-        return surface->is_back && !material->refracts && path->reflections == 0;
-    if (surface->is_back && !material->refracts)
+    if (surface->is_back && !material->refracts && path->reflections == 0)
         return true;
+    if (!material->lets_through)
+        return false;
     float3 passed = surface_passed(surface);
     float through = max3(passed);
     if (!(through > 0.0f))
@@ -205,8 +214,7 @@ static bool stops_light(void *context, const struct ray_crossing *crossing)
 {
     struct shadow *shadow = context;
     struct surface surface;
-    if (!surface_init(&surface, shadow->path->setup->snapshot, crossing, shadow->direction) ||
-        (surface.is_back && !surface.material->refracts))
+    if (!surface_init(&surface, shadow->path->setup->snapshot, crossing, shadow->direction))
         return false;
     shadow->transmittance *= surface_passed(&surface);
     return !(max3(shadow->transmittance) > MIN_TRANSMITTANCE);
@@ -223,8 +231,8 @@ static float3 transmittance_to(struct path *path, const struct surface *surface,
     struct ray ray = {.max_distance = RAY_MAX_DISTANCE};
     if (isfinite(sample->distance)) {
         // Aimed anew from the shifted origin, so that the ray meets nothing but at its end.
-        along = surface->position + sample->direction * sample->distance +
-                sample->lift * path->setup->offset_m - origin;
+        float3 target = surface->position + sample->direction * sample->distance;
+        along = target + sample->lift * offset_at(path, target) - origin;
         ray.max_distance = 1.0f - 1e-5f;
         if (!(dot3(along, sample->direction) > 0.0f))
             return splat3(1.0f);
@@ -278,7 +286,7 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
         get_2d(path, USE_EMITTER_POINT, u);
         if (lights_sample_emitter(snapshot->lights, snapshot, surface->position, choice[0], u,
                                   &sample) &&
-            sample.distance > 2.0f * setup->offset_m)
+            sample.distance > 2.0f * offset_at(path, surface->position))
             scatter_light(path, surface, bsdf, &sample, false);
     }
     if (setup->aims_at_environment) {

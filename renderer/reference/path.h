@@ -8,10 +8,9 @@
 // Single-sided surfaces are as the rasteriser shows them: the camera sees through their backs. All
 // other rays stop there and find black, since what casts a shadow in the renderer blocks light from
 // both sides, and a side that is never shown has no colour. Blended surfaces and thin walls let
-// light pass straight through in proportion to everything but the backs of single-sided ones, which
-// let all pass, so that a closed thin body tints once. Bodies (transmission and a thickness)
-// refract at both of their sides, tint where light enters, and absorb on the way; what they hide
-// from a punctual light is lit through them by chance alone, as a caustic is.
+// light pass straight through in proportion, from both sides likewise. Bodies (transmission and a
+// thickness) refract at both of their sides, tint where light enters, and absorb on the way; what
+// they hide from a punctual light is lit through them by chance alone, as a caustic is.
 #ifndef VOXCAST_RENDERER_REFERENCE_PATH_H
 #define VOXCAST_RENDERER_REFERENCE_PATH_H
 
@@ -32,7 +31,6 @@ struct path_setup {
     bool aims_at_emitters, aims_at_environment;
     bool finds_light; // rays that follow the surface count, too
     bool rays_find;   // and there is light that they could find
-    float offset_m;   // rays start this far off a surface
 };
 
 void path_setup_init(struct path_setup *setup, const struct reference_params *params);
