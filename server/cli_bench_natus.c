@@ -1,13 +1,13 @@
 // voxcast bench natus: what each step of voxel global illumination costs in a Cornell box, by the
 // resolution of the voxels, and with voxels that are kept or made anew for each frame.
 #include <cjson/cJSON.h>
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "server/cli_bench.h"
+#include "server/cli_options.h"
 
 #define DEFAULT_FRAMES  30
 #define MAX_FRAMES      10000u
@@ -29,7 +29,7 @@ static const char usage[] =
     "  --scene FILE    the box (default $VOXCAST_SCENES/natus-cornell/natus-cornell.glb); the\n"
     "                  same name with -emissive before its extension is lit by the wall\n"
     "  --size WxH      1x1 to 3840x2160 (default 1024x768)\n"
-    "  --voxels N      only this resolution: 64, 128 or 256\n"
+    "  --voxels N      only this resolution: 64, 128 or 256 (auto: all)\n"
     "  --frames N      frames measured in each row, 1 to 10000 (default 30)\n"
     "  --converge N    frames drawn before, unless it has converged, 0 to 10000 (default 100)\n"
     "  --json          JSON on stdout; the table goes to stderr\n"
@@ -38,8 +38,9 @@ static const char usage[] =
 struct natus_options {
     char scene[1024], emissive_scene[1024 + 16];
     const char *gpu;
-    uint32_t width, height, frames, converge_frames;
-    enum voxel_resolution voxels; // auto: all
+    struct cli_size size;
+    uint32_t frames, converge_frames;
+    uint32_t voxels; // an enum voxel_resolution; auto: all
     bool json;
 };
 
@@ -81,8 +82,8 @@ static void take_row(struct natus *natus, const struct scene *scene, const struc
     *row = (struct natus_row){.test = test, .voxels = voxels, .every_frame = every_frame};
     struct bench_run run = {.renderer = natus->renderer,
                             .scene = scene,
-                            .params = {.width = natus->options->width,
-                                       .height = natus->options->height,
+                            .params = {.width = natus->options->size.width,
+                                       .height = natus->options->size.height,
                                        .quality = QUALITY_INTERACTIVE,
                                        .output = FRAME_OUTPUT_YCBCR},
                             .frames = natus->options->frames,
@@ -126,7 +127,7 @@ static void run_test(struct natus *natus, const struct scene *scene, const struc
     }
     for (int v = VOXEL_RESOLUTION_64; v <= VOXEL_RESOLUTION_256; v++) {
         if (natus->options->voxels != VOXEL_RESOLUTION_AUTO &&
-            natus->options->voxels != (enum voxel_resolution)v)
+            natus->options->voxels != (uint32_t)v)
             continue;
         take_row(natus, scene, test, (enum voxel_resolution)v, false);
         take_row(natus, scene, test, (enum voxel_resolution)v, true);
@@ -206,8 +207,8 @@ static void print_table(FILE *file, const struct natus *natus)
         for (uint32_t p = 0; p < natus->rows[i].result.statistics.pass_count; p++)
             shown[p] = shown[p] || bench_pass_ms(&natus->rows[i].result, p) > 0.0;
     fprintf(file, "%s, %ux%u, interactive quality\n\n",
-            renderer_get_info(natus->renderer)->gl_renderer, natus->options->width,
-            natus->options->height);
+            renderer_get_info(natus->renderer)->gl_renderer, natus->options->size.width,
+            natus->options->size.height);
     fprintf(file, "%20s %6s %10s %8s %7s %7s", "", "", "", "frame", "", "memory");
     print_pass_head(file, statistics, shown, false);
     fprintf(file, "%-20s %6s %10s %8s %7s %7s", "test", "voxels", "voxels are", "ms", "fps", "MiB");
@@ -234,64 +235,29 @@ static bool find_scenes(const char *given, struct natus_options *options, struct
     return true;
 }
 
-static bool parse_voxels(const char *text, enum voxel_resolution *out_voxels)
+// False when the command is to end with *out_status.
+static bool parse_options(int argc, char **argv, struct natus_options *options, int *out_status)
 {
-    for (int i = VOXEL_RESOLUTION_64; i < VOXEL_RESOLUTION_COUNT; i++)
-        if (strcmp(text, voxel_resolution_names[i]) == 0) {
-            *out_voxels = (enum voxel_resolution)i;
-            return true;
-        }
-    return false;
-}
-
-// False with a message, or with `out_help` if help was asked for.
-static bool parse_options(int argc, char **argv, struct natus_options *options, bool *out_help,
-                          struct error *out_error)
-{
-    static const struct option long_options[] = {{"scene", required_argument, NULL, 'i'},
-                                                 {"size", required_argument, NULL, 's'},
-                                                 {"voxels", required_argument, NULL, 'v'},
-                                                 {"frames", required_argument, NULL, 'n'},
-                                                 {"json", no_argument, NULL, 'j'},
-                                                 {"converge", required_argument, NULL, 'k'},
-                                                 {"gpu", required_argument, NULL, 'G'},
-                                                 {"help", no_argument, NULL, 'h'},
-                                                 {NULL, 0, NULL, 0}};
-    *options = (struct natus_options){.gpu = "auto",
-                                      .width = 1024,
-                                      .height = 768,
-                                      .frames = DEFAULT_FRAMES,
-                                      .converge_frames = CONVERGE_FRAMES};
-    *out_help = false;
+    struct error error = {""};
+    struct cli_parser parser = {.command = "bench natus", .usage = usage};
     const char *scene = NULL;
-    opterr = 0;
-    optind = 1;
-    int option;
-    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        *out_help = option == 'h';
-        if (*out_help)
-            return false;
-        if (option == '?')
-            return error_set(out_error, "unknown or incomplete option \"%s\"", argv[optind - 1]);
-        if (option == 'i')
-            scene = optarg;
-        if (option == 's' && !bench_parse_size(optarg, &options->width, &options->height))
-            return error_set(out_error, "--size is \"%s\"; allowed: WxH up to %ux%u", optarg,
-                             VIEW_MAX_WIDTH, VIEW_MAX_HEIGHT);
-        if (option == 'v' && !parse_voxels(optarg, &options->voxels))
-            return error_set(out_error, "--voxels is \"%s\"; allowed: 64, 128, 256", optarg);
-        if (option == 'n' && !bench_parse_count(optarg, 1, MAX_FRAMES, &options->frames))
-            return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %u", optarg, MAX_FRAMES);
-        if (option == 'k' && !bench_parse_count(optarg, 0, MAX_FRAMES, &options->converge_frames))
-            return error_set(out_error, "--converge is \"%s\"; allowed: 0 to %u", optarg,
-                             MAX_FRAMES);
-        options->json = options->json || option == 'j';
-        if (option == 'G')
-            options->gpu = optarg;
-    }
-    if (optind < argc)
-        return error_set(out_error, "unexpected argument \"%s\"", argv[optind]);
-    return find_scenes(scene, options, out_error);
+    *options = (struct natus_options){.size = {1024, 768},
+                                      .frames = DEFAULT_FRAMES,
+                                      .converge_frames = CONVERGE_FRAMES,
+                                      .voxels = VOXEL_RESOLUTION_AUTO};
+    cli_take_text(&parser, "scene", &scene);
+    cli_take_size(&parser, &options->size);
+    cli_take_choice(&parser, "voxels", voxel_resolution_names, VOXEL_RESOLUTION_COUNT,
+                    &options->voxels);
+    cli_take_count(&parser, "frames", 1, MAX_FRAMES, &options->frames);
+    cli_take_count(&parser, "converge", 0, MAX_FRAMES, &options->converge_frames);
+    cli_take_flag(&parser, "json", &options->json);
+    cli_take_gpu(&parser, &options->gpu);
+    if (!cli_parse(&parser, argc, argv, out_status))
+        return false;
+    if (!find_scenes(scene, options, &error))
+        *out_status = cli_fail(CLI_EXIT_USAGE, "%s", error.message);
+    return *out_status == 0;
 }
 
 static int run_all(struct natus *natus)
@@ -319,19 +285,15 @@ int bench_natus(int argc, char **argv)
 {
     struct natus_options options;
     struct error error = {""};
-    bool help;
-    if (!parse_options(argc, argv, &options, &help, &error)) {
-        if (!help)
-            return cli_fail(CLI_EXIT_USAGE, "%s", error.message);
-        fputs(usage, stdout);
-        return 0;
-    }
+    int status;
+    if (!parse_options(argc, argv, &options, &status))
+        return status;
     struct natus *natus = calloc(1, sizeof(*natus)); // too large for the stack
     if (!natus)
         return cli_fail(CLI_EXIT_RENDER, "out of memory");
     natus->options = &options;
     natus->renderer = renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);
-    int status = natus->renderer ? run_all(natus) : cli_fail(CLI_EXIT_RENDER, "%s", error.message);
+    status = natus->renderer ? run_all(natus) : cli_fail(CLI_EXIT_RENDER, "%s", error.message);
     if (natus->renderer)
         renderer_destroy(&natus->renderer);
     free(natus);

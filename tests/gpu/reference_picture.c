@@ -1,13 +1,12 @@
 // Renders a scene by the reference path tracer into float pictures, and compares float pictures.
 // A tool for people who work on the renderer's light; not a test.
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "renderer/scene/scene_load.h"
 #include "server/cli.h"
+#include "server/cli_options.h"
 #include "support_path_tracer.h"
 
 static const char usage[] =
@@ -37,10 +36,10 @@ static const char usage[] =
 struct options {
     const char *source, *prefix, *minus;
     const char *compared[2];
-    bool compare;
-    bool has_eye, has_target, no_environment;
-    float fov_deg;
-    struct path_params path;
+    bool compare, no_environment;
+    struct cli_camera camera;
+    struct cli_size size;
+    uint32_t samples, bounces, seed, threads;
 };
 
 struct float_picture {
@@ -48,81 +47,32 @@ struct float_picture {
     float *rgb; // 3 floats a pixel
 };
 
-static bool parse_vector(const char *text, float out[3])
+// False when the program is to end with *out_status.
+static bool parse_options(struct options *options, int argc, char **argv, int *out_status)
 {
-    char rest;
-    return sscanf(text, "%f,%f,%f%c", &out[0], &out[1], &out[2], &rest) == 3;
-}
-
-static bool parse_option(struct options *options, int letter, const char *value)
-{
-    char rest;
-    struct path_params *path = &options->path;
-    switch (letter) {
-    case 'o':
-        options->prefix = value;
-        return true;
-    case 's':
-        return sscanf(value, "%ux%u%c", &path->width, &path->height, &rest) == 2 &&
-               path->width > 0 && path->height > 0;
-    case 'n':
-        return sscanf(value, "%u%c", &path->samples, &rest) == 1 && path->samples > 0;
-    case 'b':
-        return sscanf(value, "%u%c", &path->bounces, &rest) == 1;
-    case 'e':
-        options->has_eye = true;
-        return parse_vector(value, path->camera.eye);
-    case 't':
-        options->has_target = true;
-        return parse_vector(value, path->camera.target);
-    case 'u':
-        return parse_vector(value, path->camera.up);
-    case 'f':
-        return sscanf(value, "%f%c", &options->fov_deg, &rest) == 1 && options->fov_deg > 0.0f;
-    case 'r':
-        return sscanf(value, "%lu%c", &path->seed, &rest) == 1;
-    case 'j':
-        return sscanf(value, "%u%c", &path->threads, &rest) == 1 && path->threads > 0;
-    case 'x':
-        options->no_environment = true;
-        return true;
-    case 'c':
-        options->compare = true;
-        return true;
-    case 'm':
-        options->minus = value;
-        return true;
-    default:
+    struct cli_parser parser = {.usage = usage, .max_arguments = 2};
+    cli_take_text(&parser, "out", &options->prefix);
+    cli_take_size(&parser, &options->size);
+    cli_take_count(&parser, "spp", 1, 1u << 24, &options->samples);
+    cli_take_count(&parser, "bounces", 0, PATH_BOUNCES_UNLIMITED, &options->bounces);
+    cli_take_camera(&parser, &options->camera);
+    cli_take_count(&parser, "seed", 0, UINT32_MAX, &options->seed);
+    cli_take_count(&parser, "threads", 1, 256, &options->threads);
+    cli_take_flag(&parser, "no-environment", &options->no_environment);
+    cli_take_flag(&parser, "compare", &options->compare);
+    cli_take_text(&parser, "minus", &options->minus);
+    if (!cli_parse(&parser, argc, argv, out_status))
+        return false;
+    uint32_t wanted = options->compare ? 2 : 1;
+    if (parser.argument_count != wanted || (!options->compare && !options->prefix)) {
+        fputs(usage, stderr);
+        *out_status = CLI_EXIT_USAGE;
         return false;
     }
-}
-
-static bool parse_options(struct options *options, int argc, char **argv)
-{
-    static const struct option names[] = {
-        {"out", required_argument, NULL, 'o'},      {"size", required_argument, NULL, 's'},
-        {"spp", required_argument, NULL, 'n'},      {"bounces", required_argument, NULL, 'b'},
-        {"eye", required_argument, NULL, 'e'},      {"target", required_argument, NULL, 't'},
-        {"up", required_argument, NULL, 'u'},       {"fov-y-deg", required_argument, NULL, 'f'},
-        {"seed", required_argument, NULL, 'r'},     {"compare", no_argument, NULL, 'c'},
-        {"threads", required_argument, NULL, 'j'},  {"minus", required_argument, NULL, 'm'},
-        {"no-environment", no_argument, NULL, 'x'}, {0},
-    };
-    int letter;
-    while ((letter = getopt_long(argc, argv, "", names, NULL)) != -1)
-        if (!parse_option(options, letter, optarg)) {
-            if (letter != '?')
-                fprintf(stderr, "reference_picture: cannot use \"%s\"\n", optarg);
-            return false;
-        }
-    int left = argc - optind;
-    if (options->compare) {
-        options->compared[0] = left == 2 ? argv[optind] : NULL;
-        options->compared[1] = left == 2 ? argv[optind + 1] : NULL;
-        return left == 2;
-    }
-    options->source = left == 1 ? argv[optind] : NULL;
-    return left == 1 && options->prefix && options->has_eye == options->has_target;
+    options->source = parser.arguments[0];
+    options->compared[0] = parser.arguments[0];
+    options->compared[1] = parser.arguments[1];
+    return true;
 }
 
 // Portable Float Map: "PF", size, scale (negative: little endian), rows from the bottom up.
@@ -223,28 +173,28 @@ static bool compare(const struct options *options)
     return done;
 }
 
-static bool render(struct options *options)
+static bool render(const struct options *options)
 {
     struct error error = {""};
     struct scene *scene = scene_load(options->source, &error);
-    if (!scene) {
+    struct path_params path = {.scene = scene,
+                               .width = options->size.width,
+                               .height = options->size.height,
+                               .samples = options->samples,
+                               .bounces = options->bounces,
+                               .seed = options->seed,
+                               .threads = options->threads};
+    if (!scene ||
+        !cli_camera_choose(&options->camera, scene, (float)path.width / (float)path.height,
+                           &path.camera, &error)) {
         fprintf(stderr, "reference_picture: %s\n", error.message);
+        scene_destroy(&scene);
         return false;
     }
-    struct path_params *path = &options->path;
-    struct view_camera chosen = path->camera;
-    path->scene = scene;
     if (options->no_environment)
         scene->environment.type = SCENE_ENVIRONMENT_NONE;
-    cli_default_camera(scene, (float)path->width / (float)path->height, &path->camera);
-    if (options->has_eye) {
-        chosen.fov_y_rad = path->camera.fov_y_rad;
-        path->camera = chosen;
-    }
-    if (options->fov_deg > 0.0f)
-        path->camera.fov_y_rad = options->fov_deg * (float)M_PI / 180.0f;
     struct path_picture picture = {0};
-    bool done = path_trace(path, &picture);
+    bool done = path_trace(&path, &picture);
     if (!done)
         fprintf(stderr, "reference_picture: out of memory\n");
     const float *const layers[3] = {picture.direct, picture.sky, picture.indirect};
@@ -260,14 +210,9 @@ static bool render(struct options *options)
 int main(int argc, char **argv)
 {
     log_set_level(LOG_ERROR);
-    struct options options = {.path = {.width = 160,
-                                       .height = 120,
-                                       .samples = 64,
-                                       .bounces = PATH_BOUNCES_UNLIMITED,
-                                       .camera = {.up = {0.0f, 1.0f, 0.0f}}}};
-    if (!parse_options(&options, argc, argv)) {
-        fputs(usage, stderr);
-        return 2;
-    }
+    struct options options = {.size = {160, 120}, .samples = 64, .bounces = PATH_BOUNCES_UNLIMITED};
+    int status;
+    if (!parse_options(&options, argc, argv, &status))
+        return status;
     return (options.compare ? compare(&options) : render(&options)) ? 0 : 1;
 }
