@@ -43,5 +43,6 @@ uint64_t bench_memory_bytes(const struct bench_result *result); // all of it
 // The benches. Like all commands of cli.h; argv[0] is the bench's name.
 int bench_natus(int argc, char **argv);
 int bench_effects(int argc, char **argv);
+int bench_edit(int argc, char **argv);
 
 #endif

@@ -10,7 +10,7 @@ static const char usage[] =
     "  render SCENE --out FILE   render a scene (glTF, GLB, OBJ or builtin:NAME) to .pfm, .png or\n"
     "                            .jpg; see voxcast render --help\n"
     "  info                      show the GL renderer, its limits and the built-in scenes\n"
-    "  bench [natus|effects]     measure frames; JSON or tables on stdout; see\n"
+    "  bench [natus|effects|edit] measure frames; JSON or tables on stdout; see\n"
     "                            voxcast bench --help\n"
     "  --version                 print the version\n";
 
