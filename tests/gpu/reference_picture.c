@@ -7,7 +7,7 @@
 #include "renderer/scene/scene_load.h"
 #include "server/cli.h"
 #include "server/cli_options.h"
-#include "support_path_tracer.h"
+#include "support_path.h"
 
 static const char usage[] =
     "usage: reference_picture SCENE --out PREFIX [OPTIONS]\n"
