@@ -125,7 +125,7 @@ static void add_light(struct path *path, float3 radiance, uint32_t reflections,
 
 static float offset_at(const struct path *path, float3 position)
 {
-    float largest = fmaxf(fabsf(position[0]), fmaxf(fabsf(position[1]), fabsf(position[2])));
+    float largest = max1(fabsf(position[0]), max1(fabsf(position[1]), fabsf(position[2])));
     return OFFSET_OF_PLACE * largest + OFFSET_OF_DIAGONAL * path->setup->snapshot->diagonal_m;
 }
 
@@ -282,8 +282,8 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
             scatter_light(path, surface, bsdf, &sample, false);
     }
     if (setup->aims_at_emitters) {
-        choice[0] = get_1d(path, USE_EMITTER);
         get_2d(path, USE_EMITTER_POINT, u);
+        choice[0] = lights_are_few(snapshot->lights) ? u[0] : get_1d(path, USE_EMITTER);
         if (lights_sample_emitter(snapshot->lights, snapshot, surface->position, choice[0], u,
                                   &sample) &&
             sample.distance > 2.0f * offset_at(path, surface->position))
@@ -338,7 +338,8 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
     float u[2];
     struct scattering scattering;
     get_2d(path, USE_DIRECTION, u);
-    if (!bsdf_sample(bsdf, get_1d(path, USE_LOBE), u, &path->direction, &scattering))
+    float lobe = bsdf->p_diffuse < 1.0f ? get_1d(path, USE_LOBE) : 0.0f;
+    if (!bsdf_sample(bsdf, lobe, u, &path->direction, &scattering))
         return false;
     path->throughput *= scattering.share * (1.0f / scattering.density);
     path->density = scattering.density;
@@ -353,7 +354,7 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
     float largest = max3(path->throughput);
     bool survives = largest > 0.0f;
     if (survives && path->vertex >= ROULETTE_FROM_VERTEX) {
-        float survival = fminf(sqrtf(largest), ROULETTE_MAX_SURVIVAL);
+        float survival = min1(sqrtf(largest), ROULETTE_MAX_SURVIVAL);
         survives = get_1d(path, USE_ROULETTE) < survival;
         path->throughput *= 1.0f / survival;
     }
