@@ -15,6 +15,12 @@ static float smith_lambda(float cosine, float alpha)
     return 0.5f * (sqrtf(1.0f + alpha * alpha * (1.0f - c2) / c2) - 1.0f);
 }
 
+// Blinn-Phong's, of a lobe about as wide.
+static float exponent_of(float alpha)
+{
+    return min1(max1(2.0f / (alpha * alpha) - 2.0f, 1.0f), MAX_EXPONENT);
+}
+
 // What the dielectric layer reflects. From within a body the angle beyond decides, and where there
 // is none all is reflected.
 static float3 dielectric_fresnel(const struct bsdf *bsdf, float v_h)
@@ -91,13 +97,21 @@ void bsdf_init(struct bsdf *bsdf, const struct surface *surface, float eta, enum
     bool has_gloss = surface->metallic > 0.0f || surface->f90 > 0.0f || max3(surface->f0) > 0.0f ||
                      material->refracts;
     if (material->blinn_phong)
-        bsdf->exponent = min1(max1(2.0f / (bsdf->alpha * bsdf->alpha) - 2.0f, 1.0f), MAX_EXPONENT);
+        bsdf->exponent = exponent_of(bsdf->alpha);
     if (!has_gloss) {
         bsdf->p_diffuse = lobes == BSDF_ALL && max3(bsdf->diffuse) > 0.0f ? 1.0f : 0.0f;
         return;
     }
     bsdf->lambda_v = smith_lambda(bsdf->n_v, bsdf->alpha);
     choose_probabilities(bsdf, lobes);
+}
+
+void bsdf_widen(struct bsdf *bsdf, float alpha)
+{
+    bsdf->alpha = max1(bsdf->alpha, alpha);
+    bsdf->lambda_v = smith_lambda(bsdf->n_v, bsdf->alpha);
+    if (bsdf->exponent > 0.0f)
+        bsdf->exponent = exponent_of(bsdf->alpha);
 }
 
 // Trowbridge-Reitz, by the sine for the sake of narrow lobes.
