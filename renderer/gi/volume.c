@@ -481,9 +481,9 @@ void voxel_volume_bind(struct voxel_volume *volume)
     memcpy(block->shape,
            (uvec4){volume->lit_levels, face_words(volume), volume->face_capacity, volume->epoch},
            sizeof(uvec4));
-    // No cone blurs over more than two voxels of the coarsest level: wider ones take what is before
-    // an opening, or behind a corner, for part of it.
-    block->light[3] = 2.0f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
+    // No cone blurs over more than a voxel of the coarsest level: wider ones take what is before an
+    // opening or behind a corner for part of it, and see both sides of thin slanted walls.
+    block->light[3] = (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
     block->options[0] = volume->cell_capacity;
     block->options[3] = volume->instance_count;
     fill_levels(volume, block);
