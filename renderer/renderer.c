@@ -436,6 +436,8 @@ bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, 
         renderer->ray_scene = ray_scene_create(renderer->scene);
     else if (now->transforms != seen->transforms)
         ray_scene_update_transforms(renderer->ray_scene);
+    if (renderer->ray_scene && now->materials != seen->materials)
+        ray_scene_update_materials(renderer->ray_scene);
     renderer->ray_revisions = *now;
     if (!renderer->ray_scene)
         return false;

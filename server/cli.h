@@ -19,6 +19,7 @@
 int cli_render(int argc, char **argv);
 int cli_info(int argc, char **argv);
 int cli_bench(int argc, char **argv);
+int cli_compare(int argc, char **argv);
 
 // Prints one line to stderr and returns `status`.
 int cli_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -90,6 +91,16 @@ bool cli_render_still(struct cli_still *still, struct error *out_error);
 // (FRAME_OUTPUT_RGBA8).
 bool cli_write_picture(const char *path, const struct frame_pixels *pixels,
                        struct error *out_error);
+
+// 3 bytes a pixel, row 0 at the top, to a .png.
+bool cli_write_png(const char *path, uint32_t width, uint32_t height, const uint8_t *rgb,
+                   struct error *out_error);
+
+// Pixels of FRAME_OUTPUT_LINEAR as a picture of the caller's. False when out of memory.
+bool cli_take_picture(const struct frame_pixels *pixels, struct picture *out_picture);
+
+// Whether a name ends so, such as with ".png", in upper or lower case.
+bool cli_has_extension(const char *path, const char *extension);
 
 // The output that a file of this name wants; false if the extension is none of the three.
 bool cli_output_of(const char *path, enum frame_output *out_output);

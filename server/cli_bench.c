@@ -1,12 +1,11 @@
 // voxcast bench: moving-camera frames of scenes, median and p95 per pass as JSON on stdout.
 #include <cjson/cJSON.h>
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "server/cli_bench.h"
+#include "server/cli_options.h"
 
 #define DEFAULT_FRAMES 60
 #define WARM_UP_FRAMES 3
@@ -14,7 +13,7 @@
 
 static const char usage[] =
     "usage: voxcast bench [SCENE|builtin:NAME]... [OPTIONS]\n"
-    "       voxcast bench natus|effects [OPTIONS]; see voxcast bench natus --help\n"
+    "       voxcast bench natus|effects|edit|reference [OPTIONS]; see voxcast bench natus --help\n"
     "\n"
     "Measures frames of a camera that sways around its target, for each scene (default: all\n"
     "built-in ones), and prints JSON.\n"
@@ -26,7 +25,7 @@ static const char usage[] =
 struct bench_options {
     const char *gpu;
     uint32_t frames;
-    enum quality quality;
+    uint32_t quality;
 };
 
 static bool measure(struct renderer *renderer, const struct scene *scene,
@@ -37,7 +36,7 @@ static bool measure(struct renderer *renderer, const struct scene *scene,
                             .scene = scene,
                             .params = {.width = 640,
                                        .height = 360,
-                                       .quality = options->quality,
+                                       .quality = (enum quality)options->quality,
                                        .output = FRAME_OUTPUT_YCBCR},
                             .frames = options->frames,
                             .warm_up_frames = WARM_UP_FRAMES};
@@ -73,49 +72,16 @@ static bool bench_scene(struct renderer *renderer, const char *source,
     return done;
 }
 
-// False with a message, or with `out_help` if help was asked for.
-static bool parse_options(int argc, char **argv, struct bench_options *options, bool *out_help,
-                          struct error *out_error)
-{
-    static const struct option long_options[] = {{"frames", required_argument, NULL, 'n'},
-                                                 {"preset", required_argument, NULL, 'p'},
-                                                 {"gpu", required_argument, NULL, 'G'},
-                                                 {"help", no_argument, NULL, 'h'},
-                                                 {NULL, 0, NULL, 0}};
-    *options = (struct bench_options){
-        .gpu = "auto", .frames = DEFAULT_FRAMES, .quality = QUALITY_INTERACTIVE};
-    *out_help = false;
-    opterr = 0;
-    optind = 1;
-    int option;
-    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        if (option == 'h') {
-            *out_help = true;
-            return false;
-        }
-        if (option == '?')
-            return error_set(out_error, "unknown or incomplete option \"%s\"", argv[optind - 1]);
-        if (option == 'n' && !bench_parse_count(optarg, 1, MAX_FRAMES, &options->frames))
-            return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %u", optarg, MAX_FRAMES);
-        if (option == 'p' && !bench_parse_quality(optarg, &options->quality))
-            return error_set(
-                out_error, "--preset is \"%s\"; allowed: draft, interactive, high, final", optarg);
-        if (option == 'G')
-            options->gpu = optarg;
-    }
-    return true;
-}
-
-static int bench_scenes(struct renderer *renderer, int argc, char **argv,
+static int bench_scenes(struct renderer *renderer, const struct cli_parser *parser,
                         const struct bench_options *options)
 {
     struct error error = {""};
     struct cJSON *root = cJSON_CreateObject();
     struct cJSON *list = cJSON_AddArrayToObject(root, "scenes");
     bool done = true;
-    for (int i = optind; i < argc && done; i++)
-        done = bench_scene(renderer, argv[i], options, list, &error);
-    for (uint32_t i = 0; optind == argc && done && scene_builtin_name(i); i++) {
+    for (uint32_t i = 0; i < parser->argument_count && done; i++)
+        done = bench_scene(renderer, parser->arguments[i], options, list, &error);
+    for (uint32_t i = 0; parser->argument_count == 0 && done && scene_builtin_name(i); i++) {
         char source[128];
         snprintf(source, sizeof(source), "builtin:%s", scene_builtin_name(i));
         done = bench_scene(renderer, source, options, list, &error);
@@ -132,20 +98,25 @@ int cli_bench(int argc, char **argv)
         return bench_natus(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "effects") == 0)
         return bench_effects(argc - 1, argv + 1);
-    struct bench_options options;
+    if (argc > 1 && strcmp(argv[1], "edit") == 0)
+        return bench_edit(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "reference") == 0)
+        return bench_reference(argc - 1, argv + 1);
+    struct bench_options options = {.frames = DEFAULT_FRAMES, .quality = QUALITY_INTERACTIVE};
+    struct cli_parser parser = {
+        .command = "bench", .usage = usage, .max_arguments = CLI_MAX_ARGUMENTS};
+    int status;
+    cli_take_count(&parser, "frames", 1, MAX_FRAMES, &options.frames);
+    cli_take_preset(&parser, &options.quality);
+    cli_take_gpu(&parser, &options.gpu);
+    if (!cli_parse(&parser, argc, argv, &status))
+        return status;
     struct error error = {""};
-    bool help;
-    if (!parse_options(argc, argv, &options, &help, &error)) {
-        if (!help)
-            return cli_fail(CLI_EXIT_USAGE, "%s", error.message);
-        fputs(usage, stdout);
-        return 0;
-    }
     struct renderer *renderer =
         renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);
     if (!renderer)
         return cli_fail(CLI_EXIT_RENDER, "%s", error.message);
-    int status = bench_scenes(renderer, argc, argv, &options);
+    status = bench_scenes(renderer, &parser, &options);
     renderer_destroy(&renderer);
     return status;
 }

@@ -40,13 +40,10 @@ double bench_pass_ms(const struct bench_result *result, uint32_t pass);
 
 uint64_t bench_memory_bytes(const struct bench_result *result); // all of it
 
-// The number in `text` if it is whole and in the range.
-bool bench_parse_count(const char *text, uint32_t low, uint32_t high, uint32_t *out_count);
-bool bench_parse_size(const char *text, uint32_t *out_width, uint32_t *out_height); // "WxH"
-bool bench_parse_quality(const char *text, enum quality *out_quality);
-
 // The benches. Like all commands of cli.h; argv[0] is the bench's name.
 int bench_natus(int argc, char **argv);
 int bench_effects(int argc, char **argv);
+int bench_edit(int argc, char **argv);
+int bench_reference(int argc, char **argv);
 
 #endif

@@ -1,13 +1,11 @@
 // voxcast bench effects: what leaving out unneeded effects saves. Each scene is measured as planned
 // and with every effect forced; the pictures are the same, time and memory are not.
 #include <cjson/cJSON.h>
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "server/cli_bench.h"
+#include "server/cli_options.h"
 
 #define DEFAULT_FRAMES      30
 #define MAX_FRAMES          10000u
@@ -30,10 +28,10 @@ static const char usage[] =
 
 struct effects_options {
     const char *gpu;
-    uint32_t width, height, frames;
-    enum quality quality;
-    bool has_gi, json;
-    enum gi_method gi;
+    struct cli_size size;
+    uint32_t frames, quality;
+    uint32_t gi; // CLI_NO_CHOICE: as settings have it
+    bool json;
 };
 
 struct effects_bench {
@@ -54,18 +52,19 @@ static bool measure(struct effects_bench *bench, struct scene *scene, bool force
     const struct effects_options *options = bench->options;
     struct bench_run run = {.renderer = bench->renderer,
                             .scene = scene,
-                            .params = {.width = options->width,
-                                       .height = options->height,
-                                       .quality = options->quality,
+                            .params = {.width = options->size.width,
+                                       .height = options->size.height,
+                                       .quality = (enum quality)options->quality,
                                        .output = FRAME_OUTPUT_YCBCR},
                             .frames = options->frames,
                             .warm_up_frames = WARM_UP_FRAMES,
                             .max_converge_frames = MAX_CONVERGE_FRAMES};
     render_settings_init(&run.params.settings);
-    if (options->has_gi)
-        run.params.settings.gi_method = options->gi;
+    if (options->gi != CLI_NO_CHOICE)
+        run.params.settings.gi_method = (enum gi_method)options->gi;
     run.params.settings.force_all_effects = forced;
-    cli_default_camera(scene, (float)options->width / (float)options->height, &run.params.camera);
+    cli_default_camera(scene, (float)options->size.width / (float)options->size.height,
+                       &run.params.camera);
     *out_result = (struct bench_result){0};
     if (!renderer_set_scene(bench->renderer, scene, out_error) ||
         !bench_measure(&run, out_result, out_error))
@@ -131,59 +130,7 @@ static bool run_scene(struct effects_bench *bench, const char *source, struct er
     return done;
 }
 
-static bool parse_method(const char *text, enum gi_method *out_method)
-{
-    for (int i = 0; i < GI_METHOD_COUNT; i++)
-        if (strcmp(text, gi_method_names[i]) == 0) {
-            *out_method = (enum gi_method)i;
-            return true;
-        }
-    return false;
-}
-
-// False with a message, or with `out_help` if help was asked for.
-static bool parse_options(int argc, char **argv, struct effects_options *options, bool *out_help,
-                          struct error *out_error)
-{
-    static const struct option long_options[] = {
-        {"gi", required_argument, NULL, 'g'},   {"preset", required_argument, NULL, 'p'},
-        {"size", required_argument, NULL, 's'}, {"frames", required_argument, NULL, 'n'},
-        {"json", no_argument, NULL, 'j'},       {"gpu", required_argument, NULL, 'G'},
-        {"help", no_argument, NULL, 'h'},       {NULL, 0, NULL, 0}};
-    *options = (struct effects_options){.gpu = "auto",
-                                        .width = 640,
-                                        .height = 360,
-                                        .frames = DEFAULT_FRAMES,
-                                        .quality = QUALITY_INTERACTIVE};
-    *out_help = false;
-    opterr = 0;
-    optind = 1;
-    int option;
-    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        *out_help = option == 'h';
-        if (*out_help)
-            return false;
-        if (option == '?')
-            return error_set(out_error, "unknown or incomplete option \"%s\"", argv[optind - 1]);
-        if (option == 'g' && !parse_method(optarg, &options->gi))
-            return error_set(out_error, "--gi is \"%s\"; allowed: none, clipmap, grid", optarg);
-        options->has_gi = options->has_gi || option == 'g';
-        if (option == 'p' && !bench_parse_quality(optarg, &options->quality))
-            return error_set(
-                out_error, "--preset is \"%s\"; allowed: draft, interactive, high, final", optarg);
-        if (option == 's' && !bench_parse_size(optarg, &options->width, &options->height))
-            return error_set(out_error, "--size is \"%s\"; allowed: WxH up to %ux%u", optarg,
-                             VIEW_MAX_WIDTH, VIEW_MAX_HEIGHT);
-        if (option == 'n' && !bench_parse_count(optarg, 1, MAX_FRAMES, &options->frames))
-            return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %u", optarg, MAX_FRAMES);
-        options->json = options->json || option == 'j';
-        if (option == 'G')
-            options->gpu = optarg;
-    }
-    return true;
-}
-
-static int run_all(struct effects_bench *bench, int argc, char **argv)
+static int run_all(struct effects_bench *bench, const struct cli_parser *parser)
 {
     struct error error = {""};
     cJSON *root = cJSON_CreateObject();
@@ -194,8 +141,8 @@ static int run_all(struct effects_bench *bench, int argc, char **argv)
         snprintf(source, sizeof(source), "builtin:%s", scene_builtin_name(i));
         done = run_scene(bench, source, &error);
     }
-    for (int i = optind; i < argc && done; i++)
-        done = run_scene(bench, argv[i], &error);
+    for (uint32_t i = 0; i < parser->argument_count && done; i++)
+        done = run_scene(bench, parser->arguments[i], &error);
     if (done && bench->options->json)
         bench_print_json(root);
     cJSON_Delete(root);
@@ -204,20 +151,27 @@ static int run_all(struct effects_bench *bench, int argc, char **argv)
 
 int bench_effects(int argc, char **argv)
 {
-    struct effects_options options;
+    struct effects_options options = {.size = {640, 360},
+                                      .frames = DEFAULT_FRAMES,
+                                      .quality = QUALITY_INTERACTIVE,
+                                      .gi = CLI_NO_CHOICE};
+    struct cli_parser parser = {
+        .command = "bench effects", .usage = usage, .max_arguments = CLI_MAX_ARGUMENTS};
+    int status;
+    cli_take_gi(&parser, &options.gi);
+    cli_take_preset(&parser, &options.quality);
+    cli_take_size(&parser, &options.size);
+    cli_take_count(&parser, "frames", 1, MAX_FRAMES, &options.frames);
+    cli_take_flag(&parser, "json", &options.json);
+    cli_take_gpu(&parser, &options.gpu);
+    if (!cli_parse(&parser, argc, argv, &status))
+        return status;
     struct error error = {""};
-    bool help;
-    if (!parse_options(argc, argv, &options, &help, &error)) {
-        if (!help)
-            return cli_fail(CLI_EXIT_USAGE, "%s", error.message);
-        fputs(usage, stdout);
-        return 0;
-    }
     struct effects_bench bench = {.options = &options};
     bench.renderer = renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);
     if (!bench.renderer)
         return cli_fail(CLI_EXIT_RENDER, "%s", error.message);
-    int status = run_all(&bench, argc, argv);
+    status = run_all(&bench, &parser);
     renderer_destroy(&bench.renderer);
     return status;
 }

@@ -108,35 +108,3 @@ uint64_t bench_memory_bytes(const struct bench_result *result)
         bytes += result->statistics.memory[i].bytes;
     return bytes;
 }
-
-bool bench_parse_count(const char *text, uint32_t low, uint32_t high, uint32_t *out_count)
-{
-    char *end;
-    unsigned long count = strtoul(text, &end, 10);
-    if (end == text || *end != '\0' || text[0] == '-' || count < low || count > high)
-        return false;
-    *out_count = (uint32_t)count;
-    return true;
-}
-
-bool bench_parse_size(const char *text, uint32_t *out_width, uint32_t *out_height)
-{
-    unsigned width, height;
-    char extra;
-    if (sscanf(text, "%5ux%5u%c", &width, &height, &extra) != 2 || width < VIEW_MIN_EDGE ||
-        width > VIEW_MAX_WIDTH || height < VIEW_MIN_EDGE || height > VIEW_MAX_HEIGHT)
-        return false;
-    *out_width = width;
-    *out_height = height;
-    return true;
-}
-
-bool bench_parse_quality(const char *text, enum quality *out_quality)
-{
-    for (int i = 0; i < QUALITY_COUNT; i++)
-        if (strcmp(quality_names[i], text) == 0) {
-            *out_quality = (enum quality)i;
-            return true;
-        }
-    return false;
-}

@@ -1,30 +1,18 @@
 // voxcast info: what the renderer found.
-#include <getopt.h>
 #include <stdio.h>
 
 #include "server/cli.h"
+#include "server/cli_options.h"
 
 int cli_info(int argc, char **argv)
 {
-    static const struct option long_options[] = {{"gpu", required_argument, NULL, 'G'},
-                                                 {"help", no_argument, NULL, 'h'},
-                                                 {NULL, 0, NULL, 0}};
-    const char *gpu = "auto";
-    opterr = 0;
-    optind = 1;
-    int option;
-    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        if (option == 'h') {
-            puts("usage: voxcast info [--gpu auto|software|N]");
-            return 0;
-        }
-        if (option != 'G')
-            return cli_fail(CLI_EXIT_USAGE, "unknown or incomplete option \"%s\"",
-                            argv[optind - 1]);
-        gpu = optarg;
-    }
-    if (optind < argc)
-        return cli_fail(CLI_EXIT_USAGE, "unexpected argument \"%s\"", argv[optind]);
+    const char *gpu;
+    struct cli_parser parser = {.command = "info",
+                                .usage = "usage: voxcast info [--gpu auto|software|N]\n"};
+    int status;
+    cli_take_gpu(&parser, &gpu);
+    if (!cli_parse(&parser, argc, argv, &status))
+        return status;
     struct error error;
     struct renderer *renderer = renderer_create(&(struct renderer_params){.gpu = gpu}, &error);
     if (!renderer)

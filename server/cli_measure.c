@@ -1,5 +1,6 @@
 // Statistics of frames: quantiles and their JSON.
 #include <cjson/cJSON.h>
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -18,7 +19,7 @@ int cli_fail(int status, const char *format, ...)
     for (char *at = message; *at; at++) // one line, whatever a driver's log held
         if (*at == '\n')
             *at = ' ';
-    fprintf(stderr, "voxcast: %s\n", message);
+    fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
     return status;
 }
 

@@ -18,7 +18,7 @@
 #define JPEG_FILE_QUALITY 95
 #define FRAMING_FOV_RAD   0.8f
 
-static bool has_extension(const char *path, const char *extension)
+bool cli_has_extension(const char *path, const char *extension)
 {
     size_t length = strlen(path), suffix = strlen(extension);
     return length > suffix && strcasecmp(path + length - suffix, extension) == 0;
@@ -26,32 +26,37 @@ static bool has_extension(const char *path, const char *extension)
 
 bool cli_output_of(const char *path, enum frame_output *out_output)
 {
-    if (has_extension(path, ".pfm"))
+    if (cli_has_extension(path, ".pfm"))
         *out_output = FRAME_OUTPUT_LINEAR;
-    else if (has_extension(path, ".png") || has_extension(path, ".jpg") ||
-             has_extension(path, ".jpeg"))
+    else if (cli_has_extension(path, ".png") || cli_has_extension(path, ".jpg") ||
+             cli_has_extension(path, ".jpeg"))
         *out_output = FRAME_OUTPUT_RGBA8;
     else
         return false;
     return true;
 }
 
-// Portable Float Map: "PF", size, scale (negative: little endian), rows from the bottom up.
-static bool write_pfm(FILE *file, const struct frame_pixels *pixels)
+bool cli_take_picture(const struct frame_pixels *pixels, struct picture *out_picture)
 {
-    fprintf(file, "PF\n%u %u\n-1.0\n", pixels->width, pixels->height);
-    float *row = malloc(pixels->width * 3 * sizeof(float));
-    if (!row)
+    if (!picture_init(out_picture, pixels->width, pixels->height))
         return false;
-    bool done = true;
-    for (uint32_t y = pixels->height; y-- > 0 && done;) {
+    float *target = out_picture->rgb;
+    for (uint32_t y = 0; y < pixels->height; y++) {
         const float *source =
             (const float *)(pixels->planes[0] + (size_t)y * pixels->row_pitch_bytes[0]);
-        for (uint32_t x = 0; x < pixels->width; x++)
-            memcpy(row + 3 * x, source + 4 * x, 3 * sizeof(float));
-        done = fwrite(row, 3 * sizeof(float), pixels->width, file) == pixels->width;
+        for (uint32_t x = 0; x < pixels->width; x++, target += 3)
+            memcpy(target, source + 4 * x, 3 * sizeof(float));
     }
-    free(row);
+    return true;
+}
+
+static bool write_pfm(const char *path, const struct frame_pixels *pixels, struct error *out_error)
+{
+    struct picture picture;
+    if (!cli_take_picture(pixels, &picture))
+        return error_set(out_error, "out of memory");
+    bool done = picture_write_pfm(path, &picture, out_error);
+    picture_finish(&picture);
     return done;
 }
 
@@ -94,24 +99,37 @@ static bool write_png(FILE *file, const struct frame_pixels *pixels)
     return done;
 }
 
+// Closes the file; what could not be written in full is removed.
+static bool close_file(FILE *file, const char *path, bool done, struct error *out_error)
+{
+    done = !ferror(file) && done;
+    if (fclose(file) == 0 && done)
+        return true;
+    remove(path);
+    return error_set(out_error, "cannot write all of \"%s\" (disk full?)", path);
+}
+
 bool cli_write_picture(const char *path, const struct frame_pixels *pixels, struct error *out_error)
+{
+    if (pixels->output == FRAME_OUTPUT_LINEAR)
+        return write_pfm(path, pixels, out_error);
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        return error_set(out_error, "cannot write \"%s\": %m", path);
+    bool done =
+        cli_has_extension(path, ".png") ? write_png(file, pixels) : write_jpeg(file, pixels);
+    return close_file(file, path, done, out_error);
+}
+
+bool cli_write_png(const char *path, uint32_t width, uint32_t height, const uint8_t *rgb,
+                   struct error *out_error)
 {
     FILE *file = fopen(path, "wb");
     if (!file)
         return error_set(out_error, "cannot write \"%s\": %m", path);
-    bool done;
-    if (pixels->output == FRAME_OUTPUT_LINEAR)
-        done = write_pfm(file, pixels);
-    else if (has_extension(path, ".png"))
-        done = write_png(file, pixels);
-    else
-        done = write_jpeg(file, pixels);
-    done = !ferror(file) && done;
-    if (fclose(file) != 0 || !done) {
-        remove(path);
-        return error_set(out_error, "cannot write all of \"%s\" (disk full?)", path);
-    }
-    return true;
+    bool done =
+        stbi_write_png_to_func(append_to_file, file, (int)width, (int)height, 3, rgb, 0) != 0;
+    return close_file(file, path, done, out_error);
 }
 
 void cli_default_camera(const struct scene *scene, float aspect, struct view_camera *out_camera)

@@ -1,15 +1,10 @@
 // voxcast render: one scene to one picture.
 #include <cjson/cJSON.h>
-#include <getopt.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "server/cli.h"
-#include "server/document.h"
+#include "server/cli_shot.h"
 
-#define MAX_SETS   256
 #define MAX_FRAMES 100000
 
 static const char usage[] =
@@ -39,243 +34,47 @@ static const char usage[] =
     "  --gpu WHICH          auto, software or a device index (default auto)\n";
 
 struct render_options {
-    const char *scene;
-    const char *out;
-    const char *stats;
-    const char *camera;
-    const char *gpu;
-    const char *preset;
-    bool has_eye, has_target, has_up, has_fov, has_move, converge_first;
-    float eye[3], target[3], up[3], move[3];
-    float fov_y_rad;
+    struct cli_shot_options shot;
+    const char *out, *stats;
+    struct cli_vector move;
+    bool converge_first;
     uint32_t frames; // 0: until the picture has converged
-    uint32_t set_count;
-    const char *sets[MAX_SETS];
-    uint32_t width, height;
-    const char *gi, *view;
 };
 
-static bool take_vector(const char *option, const char *text, float out_vector[3],
-                        struct error *out_error)
-{
-    float v[3];
-    char extra;
-    bool fine = sscanf(text, "%f,%f,%f%c", &v[0], &v[1], &v[2], &extra) == 3;
-    for (int i = 0; i < 3 && fine; i++)
-        fine = isfinite(v[i]);
-    if (!fine)
-        return error_set(out_error, "%s is \"%s\"; three finite numbers X,Y,Z are needed", option,
-                         text);
-    memcpy(out_vector, v, sizeof(v));
-    return true;
-}
-
-static bool parse_size(const char *text, struct render_options *options)
-{
-    unsigned width, height;
-    char extra;
-    if (sscanf(text, "%5ux%5u%c", &width, &height, &extra) != 2 || width < VIEW_MIN_EDGE ||
-        width > VIEW_MAX_WIDTH || height < VIEW_MIN_EDGE || height > VIEW_MAX_HEIGHT)
-        return false;
-    options->width = width;
-    options->height = height;
-    return true;
-}
-
-static bool parse_number(const char *text, double low, double high, double *out_number)
-{
-    char *end;
-    double number = strtod(text, &end);
-    if (end == text || *end != '\0' || !(number >= low && number <= high))
-        return false;
-    *out_number = number;
-    return true;
-}
-
-// Takes one option; false with a message.
-static bool take_option(struct render_options *options, int option, const char *value,
-                        struct error *out_error)
-{
-    double number;
-    switch (option) {
-    case 'o':
-        options->out = value;
-        return true;
-    case 'c':
-        options->camera = value;
-        return true;
-    case 'e':
-        options->has_eye = true;
-        return take_vector("--eye", value, options->eye, out_error);
-    case 't':
-        options->has_target = true;
-        return take_vector("--target", value, options->target, out_error);
-    case 'u':
-        options->has_up = true;
-        return take_vector("--up", value, options->up, out_error);
-    case 'm':
-        options->has_move = true;
-        return take_vector("--move-eye", value, options->move, out_error);
-    case 'f':
-        if (!parse_number(value, 0.1, 179.0, &number))
-            return error_set(out_error, "--fov-y-deg is \"%s\"; allowed: 0.1 to 179", value);
-        options->has_fov = true;
-        options->fov_y_rad = (float)(number * M_PI / 180.0);
-        return true;
-    case 's':
-        return parse_size(value, options) ||
-               error_set(out_error, "--size is \"%s\"; allowed: WxH from 1x1 to %ux%u", value,
-                         VIEW_MAX_WIDTH, VIEW_MAX_HEIGHT);
-    case 'n':
-        if (!parse_number(value, 1, MAX_FRAMES, &number) || number != floor(number))
-            return error_set(out_error, "--frames is \"%s\"; allowed: 1 to %d", value, MAX_FRAMES);
-        options->frames = (uint32_t)number;
-        return true;
-    case 'k':
-        options->converge_first = true;
-        return true;
-    case 'S':
-        if (options->set_count == MAX_SETS)
-            return error_set(out_error, "--set is given more than %d times", MAX_SETS);
-        options->sets[options->set_count++] = value;
-        return true;
-    case 'g':
-        options->gi = value;
-        return true;
-    case 'p':
-        options->preset = value;
-        return true;
-    case 'v':
-        options->view = value;
-        return true;
-    case 'j':
-        options->stats = value;
-        return true;
-    case 'G':
-        options->gpu = value;
-        return true;
-    default:
-        return error_set(out_error, "unknown or incomplete option; see voxcast render --help");
-    }
-}
-
-static const struct option long_options[] = {
-    {"out", required_argument, NULL, 'o'},      {"camera", required_argument, NULL, 'c'},
-    {"eye", required_argument, NULL, 'e'},      {"target", required_argument, NULL, 't'},
-    {"up", required_argument, NULL, 'u'},       {"fov-y-deg", required_argument, NULL, 'f'},
-    {"size", required_argument, NULL, 's'},     {"gi", required_argument, NULL, 'g'},
-    {"preset", required_argument, NULL, 'p'},   {"view", required_argument, NULL, 'v'},
-    {"set", required_argument, NULL, 'S'},      {"frames", required_argument, NULL, 'n'},
-    {"move-eye", required_argument, NULL, 'm'}, {"converge-first", no_argument, NULL, 'k'},
-    {"stats", required_argument, NULL, 'j'},    {"gpu", required_argument, NULL, 'G'},
-    {"help", no_argument, NULL, 'h'},           {NULL, 0, NULL, 0},
-};
-
-static bool check_options(const struct render_options *options, struct error *out_error)
+static bool check_options(const struct cli_parser *parser, struct render_options *options,
+                          struct error *out_error)
 {
     enum frame_output output;
-    if (!options->scene)
+    if (parser->argument_count == 0)
         return error_set(out_error, "no scene given; see voxcast render --help");
+    options->shot.source = parser->arguments[0];
     if (!options->out)
         return error_set(out_error, "no --out FILE given");
     if (!cli_output_of(options->out, &output))
         return error_set(out_error, "--out is \"%s\"; allowed extensions: .pfm, .png, .jpg",
                          options->out);
-    if (options->frames == 0 && (options->has_move || options->converge_first))
+    if (options->frames == 0 && (options->move.given || options->converge_first))
         return error_set(out_error, "--move-eye and --converge-first need --frames");
-    if (options->has_eye != options->has_target)
-        return error_set(out_error, "--eye and --target are needed together");
-    if (options->camera && options->has_eye)
-        return error_set(out_error, "--camera and --eye exclude each other");
     return true;
 }
 
-// Options of the command line, or false with a message; `out_help` if help was asked for.
-static bool parse_options(int argc, char **argv, struct render_options *options, bool *out_help,
-                          struct error *out_error)
+// False when the command is to end with *out_status.
+static bool parse_options(int argc, char **argv, struct render_options *options, int *out_status)
 {
-    *options = (struct render_options){
-        .gpu = "auto", .width = 1280, .height = 720, .up = {0.0f, 1.0f, 0.0f}};
-    *out_help = false;
-    opterr = 0;
-    optind = 1;
-    int option;
-    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        if (option == 'h') {
-            *out_help = true;
-            return true;
-        }
-        if (option == '?')
-            return error_set(out_error,
-                             "unknown or incomplete option \"%s\"; see voxcast render "
-                             "--help",
-                             argv[optind - 1]);
-        if (!take_option(options, option, optarg, out_error))
-            return false;
-    }
-    if (optind < argc)
-        options->scene = argv[optind++];
-    if (optind < argc)
-        return error_set(out_error, "unexpected argument \"%s\"", argv[optind]);
-    return check_options(options, out_error);
-}
-
-static bool choose_camera(const struct render_options *options, const struct scene *scene,
-                          struct view_camera *out_camera, struct error *out_error)
-{
-    cli_default_camera(scene, (float)options->width / (float)options->height, out_camera);
-    if (options->has_eye) {
-        memcpy(out_camera->eye, options->eye, sizeof(options->eye));
-        memcpy(out_camera->target, options->target, sizeof(options->target));
-        memcpy(out_camera->up, options->up, sizeof(options->up));
-    }
-    if (options->camera) {
-        uint32_t found = SCENE_NONE;
-        char *end;
-        unsigned long index = strtoul(options->camera, &end, 10);
-        if (*options->camera && !*end && index < scene->camera_count)
-            found = (uint32_t)index;
-        for (uint32_t i = 0; i < scene->camera_count && found == SCENE_NONE; i++)
-            if (strcmp(scene->cameras[i].name, options->camera) == 0)
-                found = i;
-        if (found == SCENE_NONE)
-            return error_set(out_error, "there is no camera \"%s\"; the scene has %u cameras",
-                             options->camera, scene->camera_count);
-        scene_get_camera_placement(scene, found, out_camera->eye, out_camera->target,
-                                   out_camera->up);
-        out_camera->fov_y_rad = scene->cameras[found].fov_y_rad;
-    }
-    if (options->has_fov)
-        out_camera->fov_y_rad = options->fov_y_rad;
-    return true;
-}
-
-// Applies --gi, --preset, --view and every --set.
-static bool apply_settings(const struct render_options *options, struct scene *scene,
-                           struct render_settings *settings, struct view_options *view,
-                           struct error *out_error)
-{
-    const char *preset = options->preset;
-    if (!preset)
-        preset = options->frames > 1 ? "interactive" : "final";
-    const char *const named[][2] = {{"settings.gi_method", options->gi},
-                                    {"view.quality", preset},
-                                    {"view.debug_view", options->view}};
-    for (int i = 0; i < 3; i++)
-        if (named[i][1] &&
-            !document_set_text(scene, settings, view, named[i][0], named[i][1], out_error))
-            return false;
-    for (uint32_t i = 0; i < options->set_count; i++) {
-        char key[256];
-        const char *equals = strchr(options->sets[i], '=');
-        if (!equals || (size_t)(equals - options->sets[i]) >= sizeof(key))
-            return error_set(out_error, "--set is \"%.200s\"; KEY=VALUE is needed",
-                             options->sets[i]);
-        snprintf(key, sizeof(key), "%.*s", (int)(equals - options->sets[i]), options->sets[i]);
-        if (!document_set_text(scene, settings, view, key, equals + 1, out_error))
-            return false;
-    }
-    return true;
+    struct error error = {""};
+    struct cli_parser parser = {.command = "render", .usage = usage, .max_arguments = 1};
+    *options = (struct render_options){.shot.size = {1280, 720}};
+    cli_take_shot(&parser, &options->shot);
+    cli_take_text(&parser, "out", &options->out);
+    cli_take_text(&parser, "stats", &options->stats);
+    cli_take_count(&parser, "frames", 1, MAX_FRAMES, &options->frames);
+    cli_take_vector(&parser, "move-eye", &options->move);
+    cli_take_flag(&parser, "converge-first", &options->converge_first);
+    if (!cli_parse(&parser, argc, argv, out_status))
+        return false;
+    if (!check_options(&parser, options, &error))
+        *out_status = cli_fail(CLI_EXIT_USAGE, "%s", error.message);
+    return *out_status == 0;
 }
 
 static void move_camera(struct view_camera *camera, const float move[3])
@@ -338,7 +137,7 @@ static int render_one(struct render_job *job, bool measured, const char *path)
 {
     struct error error = {""};
     struct frame_pixels pixels;
-    bool drawn = job->options->has_move
+    bool drawn = job->options->move.given
                      ? cli_render_next_frame(job->renderer, job->view, job->params, &pixels, &error)
                      : cli_render_frame(job->renderer, job->view, job->params, &pixels, &error);
     if (!drawn)
@@ -365,11 +164,11 @@ static int render_count(struct render_job *job)
     int status = 0;
     if (options->converge_first) {
         status = render_still(job, NULL, NULL);
-        move_camera(&job->params->camera, options->move);
+        move_camera(&job->params->camera, options->move.xyz);
     }
     for (uint32_t i = 0; i < count && status == 0; i++) {
         status = render_one(job, i >= warm_up, i + 1 == count ? options->out : NULL);
-        move_camera(&job->params->camera, options->move);
+        move_camera(&job->params->camera, options->move.xyz);
     }
     return status;
 }
@@ -390,14 +189,13 @@ static int write_statistics(const struct render_job *job)
     return done ? 0 : cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
 }
 
-static int render_frames(const struct render_options *options, struct renderer *renderer,
-                         const struct scene *scene, struct frame_params *params)
+static int render_frames(const struct render_options *options, struct cli_shot *shot)
 {
     struct render_job job = {.options = options,
-                             .renderer = renderer,
-                             .view = renderer_view_create(renderer),
-                             .scene = scene,
-                             .params = params};
+                             .renderer = shot->renderer,
+                             .view = renderer_view_create(shot->renderer),
+                             .scene = shot->scene,
+                             .params = &shot->params};
     if (!job.view)
         return cli_fail(CLI_EXIT_RENDER, "out of memory");
     int status = options->frames > 0 ? render_count(&job)
@@ -405,59 +203,26 @@ static int render_frames(const struct render_options *options, struct renderer *
     if (status == 0 && options->stats)
         status = write_statistics(&job);
     cli_measurement_finish(&job.measurement);
-    renderer_view_destroy(renderer, &job.view);
+    renderer_view_destroy(shot->renderer, &job.view);
     return status;
 }
 
 int cli_render(int argc, char **argv)
 {
     struct render_options options;
-    struct error error = {""};
-    bool help;
-    if (!parse_options(argc, argv, &options, &help, &error))
-        return cli_fail(CLI_EXIT_USAGE, "%s", error.message);
-    if (help) {
-        fputs(usage, stdout);
-        return 0;
-    }
-    struct scene *scene = scene_load(options.scene, &error);
-    if (!scene)
-        return cli_fail(CLI_EXIT_SCENE, "%s", error.message);
-    for (uint32_t i = 0; i < scene->warning_count; i++)
-        fprintf(stderr, "voxcast: warning: %s\n", scene->warnings[i]);
-    struct frame_params params = {0};
-    struct view_options view;
-    struct renderer *renderer = NULL;
-    int status = 0;
-    render_settings_init(&params.settings);
-    view_options_init(&view);
-    view.width = options.width;
-    view.height = options.height;
-    if (!choose_camera(&options, scene, &view.camera, &error) ||
-        !apply_settings(&options, scene, &params.settings, &view, &error)) {
-        status = cli_fail(CLI_EXIT_USAGE, "%s", error.message);
-        goto done;
-    }
-    params.width = view.width;
-    params.height = view.height;
-    params.camera = view.camera;
-    params.quality = view.quality;
-    params.debug_view = view.debug_view;
-    params.debug_level = view.debug_level;
-    params.debug_face = view.debug_face;
-    cli_output_of(options.out, &params.output);
-    renderer = renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);
-    if (!renderer || !renderer_set_scene(renderer, scene, &error)) {
-        status = cli_fail(CLI_EXIT_RENDER, "%s", error.message);
-        goto done;
-    }
-    status = render_frames(&options, renderer, scene, &params);
-    if (status == 0 && renderer_gl_error_count(renderer) > 0)
+    struct cli_shot shot;
+    int status;
+    if (!parse_options(argc, argv, &options, &status))
+        return status;
+    status = cli_shot_open(&options.shot, options.frames > 1 ? QUALITY_INTERACTIVE : QUALITY_FINAL,
+                           &shot);
+    if (status != 0)
+        return status;
+    cli_output_of(options.out, &shot.params.output);
+    status = render_frames(&options, &shot);
+    if (status == 0 && renderer_gl_error_count(shot.renderer) > 0)
         status = cli_fail(CLI_EXIT_RENDER, "the GL driver reported %llu errors",
-                          (unsigned long long)renderer_gl_error_count(renderer));
-done:
-    if (renderer)
-        renderer_destroy(&renderer);
-    scene_destroy(&scene);
+                          (unsigned long long)renderer_gl_error_count(shot.renderer));
+    cli_shot_close(&shot);
     return status;
 }

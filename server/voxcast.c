@@ -10,8 +10,11 @@ static const char usage[] =
     "  render SCENE --out FILE   render a scene (glTF, GLB, OBJ or builtin:NAME) to .pfm, .png or\n"
     "                            .jpg; see voxcast render --help\n"
     "  info                      show the GL renderer, its limits and the built-in scenes\n"
-    "  bench [natus|effects]     measure frames; JSON or tables on stdout; see\n"
+    "  bench [natus|effects|edit]\n"
+    "                            measure frames; JSON or tables on stdout; see\n"
     "                            voxcast bench --help\n"
+    "  compare A.pfm B.pfm       tell how far a picture is from the truth; see\n"
+    "                            voxcast compare --help\n"
     "  --version                 print the version\n";
 
 int main(int argc, char **argv)
@@ -29,10 +32,11 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         int (*run)(int argc, char **argv);
-    } commands[] = {{"render", cli_render}, {"info", cli_info}, {"bench", cli_bench}};
+    } commands[] = {
+        {"render", cli_render}, {"info", cli_info}, {"bench", cli_bench}, {"compare", cli_compare}};
     for (size_t i = 0; i < sizeof(commands) / sizeof(commands[0]); i++)
         if (strcmp(argv[1], commands[i].name) == 0)
             return commands[i].run(argc - 1, argv + 1);
-    return cli_fail(CLI_EXIT_USAGE, "unknown command \"%s\"; known are render, info and bench",
-                    argv[1]);
+    return cli_fail(CLI_EXIT_USAGE,
+                    "unknown command \"%s\"; known are render, info, bench and compare", argv[1]);
 }

@@ -15,6 +15,16 @@
 struct filter_data {
     const struct scene *scene;
     uint32_t primitive;
+    bool is_masked;
+    bool lets_light_pass;
+};
+
+// What an occlusion query hands to the filters.
+struct light_context {
+    struct RTCIntersectContext embree; // first, as Embree hands it on
+    const struct ray_scene *ray_scene;
+    ray_scene_stops_light *stops_light;
+    void *context;
 };
 
 struct ray_scene {
@@ -24,6 +34,7 @@ struct ray_scene {
     RTCScene *meshes; // by mesh; NULL where no node uses it
     uint32_t mesh_count;
     struct filter_data *filters; // by primitive
+    bool *lets_light_pass;       // by material
     uint32_t *instance_nodes;    // node by instance, which is the geometry's id in `top`
     float *instance_extents;     // largest coordinate of the instance's mesh
     uint32_t instance_count;
@@ -50,21 +61,71 @@ static float alpha_at(const struct scene *scene, uint32_t primitive, uint32_t tr
     return alpha * texel[3] * material->base_color[3];
 }
 
-// Refuses hits in the holes of alpha-masked materials, as the materials are now.
-static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
+static bool is_hole(const struct filter_data *data, const struct RTCHit *hit)
 {
-    const struct filter_data *data = arguments->geometryUserPtr;
     const struct scene *scene = data->scene;
     const struct scene_material *material =
         &scene->materials[scene->primitives[data->primitive].material];
-    if (material->alpha_mode != SCENE_ALPHA_MASK) {
-        return;
-    }
-    // Rays are cast one at a time, so that there is one hit here.
-    const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
-    if (alpha_at(scene, data->primitive, hit->primID, hit->u, hit->v) < material->alpha_cutoff) {
+    return alpha_at(scene, data->primitive, hit->primID, hit->u, hit->v) < material->alpha_cutoff;
+}
+
+// Refuses hits in the holes of alpha-masked materials. Rays are cast one at a time, so that there
+// is one hit here.
+static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
+{
+    if (is_hole(arguments->geometryUserPtr, (const struct RTCHit *)arguments->hit)) {
         arguments->valid[0] = 0;
     }
+}
+
+static struct ray_crossing crossing_of(const struct ray_scene *ray_scene, const struct RTCHit *hit,
+                                       float distance)
+{
+    const struct scene *scene = ray_scene->scene;
+    uint32_t node = ray_scene->instance_nodes[hit->instID[0]];
+    uint32_t mesh = scene->nodes[node].mesh;
+    return (struct ray_crossing){
+        .node = node,
+        .primitive = scene->meshes[mesh].primitive_first + hit->geomID,
+        .triangle = hit->primID,
+        .barycentric = {hit->u, hit->v},
+        .distance = distance,
+    };
+}
+
+// Refuses what light passes through, besides holes.
+static void filter_occlusion(const struct RTCFilterFunctionNArguments *arguments)
+{
+    const struct filter_data *data = arguments->geometryUserPtr;
+    const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
+    if (data->is_masked && is_hole(data, hit)) {
+        arguments->valid[0] = 0;
+        return;
+    }
+    const struct light_context *light = (const struct light_context *)arguments->context;
+    if (!data->lets_light_pass) {
+        return;
+    }
+    struct ray_crossing crossing =
+        crossing_of(light->ray_scene, hit, ((const struct RTCRay *)arguments->ray)->tfar);
+    if (!light->stops_light || !light->stops_light(light->context, &crossing)) {
+        arguments->valid[0] = 0;
+    }
+}
+
+// Filters cost time: only geometry that needs them has any.
+static void set_filters(RTCGeometry geometry, const struct filter_data *data)
+{
+    bool any = data->is_masked || data->lets_light_pass;
+    rtcSetGeometryIntersectFilterFunction(geometry, data->is_masked ? filter_hit : NULL);
+    rtcSetGeometryOccludedFilterFunction(geometry, any ? filter_occlusion : NULL);
+}
+
+static bool is_masked(const struct scene *scene, uint32_t primitive)
+{
+    const struct scene_material *material =
+        &scene->materials[scene->primitives[primitive].material];
+    return material->alpha_mode == SCENE_ALPHA_MASK;
 }
 
 static void attach_primitive(struct ray_scene *ray_scene, RTCScene mesh, uint32_t primitive,
@@ -78,9 +139,11 @@ static void attach_primitive(struct ray_scene *ray_scene, RTCScene mesh, uint32_
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene->indices,
                                source->index_first * sizeof(uint32_t), 3 * sizeof(uint32_t),
                                source->index_count / 3);
-    ray_scene->filters[primitive] = (struct filter_data){scene, primitive};
+    ray_scene->filters[primitive] =
+        (struct filter_data){scene, primitive, is_masked(scene, primitive),
+                             ray_scene->lets_light_pass[source->material]};
     rtcSetGeometryUserData(geometry, &ray_scene->filters[primitive]);
-    rtcSetGeometryIntersectFilterFunction(geometry, filter_hit);
+    set_filters(geometry, &ray_scene->filters[primitive]);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(mesh, geometry, id);
     rtcReleaseGeometry(geometry);
@@ -135,6 +198,12 @@ static void add_instances(struct ray_scene *ray_scene)
 
 struct ray_scene *ray_scene_create(const struct scene *scene)
 {
+    return ray_scene_create_for_light(&(struct ray_scene_params){.scene = scene});
+}
+
+struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *params)
+{
+    const struct scene *scene = params->scene;
     struct ray_scene *ray_scene = calloc(1, sizeof(*ray_scene));
     if (!ray_scene) {
         return NULL;
@@ -144,12 +213,17 @@ struct ray_scene *ray_scene_create(const struct scene *scene)
     ray_scene->device = rtcNewDevice(NULL);
     ray_scene->meshes = calloc(scene->mesh_count + 1, sizeof(*ray_scene->meshes));
     ray_scene->filters = calloc(scene->primitive_count + 1, sizeof(*ray_scene->filters));
+    ray_scene->lets_light_pass = calloc(scene->material_count + 1, sizeof(bool));
     ray_scene->instance_nodes = calloc(scene->node_count + 1, sizeof(uint32_t));
     ray_scene->instance_extents = calloc(scene->node_count + 1, sizeof(float));
     if (!ray_scene->device || !ray_scene->meshes || !ray_scene->filters ||
-        !ray_scene->instance_nodes || !ray_scene->instance_extents) {
+        !ray_scene->instance_nodes || !ray_scene->instance_extents || !ray_scene->lets_light_pass) {
         ray_scene_destroy(&ray_scene);
         return NULL;
+    }
+    if (params->lets_light_pass) {
+        memcpy(ray_scene->lets_light_pass, params->lets_light_pass,
+               scene->material_count * sizeof(bool));
     }
     ray_scene->top = rtcNewScene(ray_scene->device);
     rtcSetSceneFlags(ray_scene->top, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
@@ -181,6 +255,7 @@ void ray_scene_destroy(struct ray_scene **ray_scene_slot)
     }
     free(ray_scene->meshes);
     free(ray_scene->filters);
+    free(ray_scene->lets_light_pass);
     free(ray_scene->instance_nodes);
     free(ray_scene->instance_extents);
     free(ray_scene);
@@ -233,6 +308,34 @@ void ray_scene_update_transforms(struct ray_scene *ray_scene)
     rtcCommitScene(ray_scene->top);
 }
 
+void ray_scene_update_materials(struct ray_scene *ray_scene)
+{
+    const struct scene *scene = ray_scene->scene;
+    bool any_rebuilt = false;
+    for (uint32_t mesh = 0; mesh < ray_scene->mesh_count; mesh++) {
+        const struct scene_mesh *source = &scene->meshes[mesh];
+        bool rebuild = false;
+        for (uint32_t i = 0; ray_scene->meshes[mesh] && i < source->primitive_count; i++) {
+            uint32_t primitive = source->primitive_first + i;
+            if (ray_scene->filters[primitive].is_masked == is_masked(scene, primitive)) {
+                continue;
+            }
+            RTCGeometry geometry = rtcGetGeometry(ray_scene->meshes[mesh], i);
+            ray_scene->filters[primitive].is_masked = is_masked(scene, primitive);
+            set_filters(geometry, &ray_scene->filters[primitive]);
+            rtcCommitGeometry(geometry);
+            rebuild = true;
+        }
+        if (rebuild) {
+            rtcCommitScene(ray_scene->meshes[mesh]);
+        }
+        any_rebuilt = any_rebuilt || rebuild;
+    }
+    if (any_rebuilt) {
+        ray_scene_update_transforms(ray_scene);
+    }
+}
+
 // The geometric normal in world space, unit length, on the side the ray comes from.
 static void fill_normal(const struct scene_node *node, const struct RTCHit *hit,
                         const float direction[3], float out_normal[3])
@@ -254,6 +357,74 @@ static void fill_normal(const struct scene_node *node, const struct RTCHit *hit,
     }
 }
 
+static struct RTCRay embree_ray(const struct ray *ray)
+{
+    return (struct RTCRay){.org_x = ray->origin[0],
+                           .org_y = ray->origin[1],
+                           .org_z = ray->origin[2],
+                           .dir_x = ray->direction[0],
+                           .dir_y = ray->direction[1],
+                           .dir_z = ray->direction[2],
+                           .tfar = ray->max_distance,
+                           .mask = UINT32_MAX};
+}
+
+static bool find_nearest(const struct ray_scene *ray_scene, const struct ray *ray,
+                         struct RTCRayHit *out_query)
+{
+    out_query->ray = embree_ray(ray);
+    out_query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    out_query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(ray_scene->top, &context, out_query);
+    return out_query->hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+bool ray_scene_find(const struct ray_scene *ray_scene, const struct ray *ray,
+                    struct ray_crossing *out_crossing)
+{
+    struct RTCRayHit query;
+    if (!find_nearest(ray_scene, ray, &query)) {
+        return false;
+    }
+    *out_crossing = crossing_of(ray_scene, &query.hit, query.ray.tfar);
+    return true;
+}
+
+bool ray_scene_is_occluded(const struct ray_scene *ray_scene, const struct ray *ray,
+                           ray_scene_stops_light *stops_light, void *context)
+{
+    struct RTCRay query = embree_ray(ray);
+    struct light_context light = {
+        .ray_scene = ray_scene, .stops_light = stops_light, .context = context};
+    rtcInitIntersectContext(&light.embree);
+    rtcOccluded1(ray_scene->top, &light.embree, &query);
+    return query.tfar < 0.0f; // Embree's sign of a hit: minus infinity
+}
+
+uint64_t ray_scene_cast_all(const struct ray_scene *ray_scene, const struct ray_load *rays,
+                            uint64_t count)
+{
+    uint64_t hits = 0;
+    struct light_context light = {.ray_scene = ray_scene};
+    rtcInitIntersectContext(&light.embree);
+    for (uint64_t i = 0; i < count; i++) {
+        struct RTCRayHit query;
+        query.ray = embree_ray(&rays[i].ray);
+        if (rays[i].is_shadow) {
+            rtcOccluded1(ray_scene->top, &light.embree, &query.ray);
+            hits += query.ray.tfar < 0.0f;
+            continue;
+        }
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(ray_scene->top, &light.embree, &query);
+        hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    }
+    return hits;
+}
+
 bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3],
                          const float direction[3], float max_distance, struct ray_hit *out_hit)
 {
@@ -264,30 +435,19 @@ bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3
     if (!finite || (direction[0] == 0 && direction[1] == 0 && direction[2] == 0)) {
         return false;
     }
-    struct RTCRayHit query = {
-        .ray = {.org_x = origin[0],
-                .org_y = origin[1],
-                .org_z = origin[2],
-                .dir_x = direction[0],
-                .dir_y = direction[1],
-                .dir_z = direction[2],
-                .tnear = 0,
-                .tfar = max_distance,
-                .mask = UINT32_MAX},
-        .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}},
-    };
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(ray_scene->top, &context, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+    const struct ray ray = {.origin = {origin[0], origin[1], origin[2]},
+                            .direction = {direction[0], direction[1], direction[2]},
+                            .max_distance = max_distance};
+    struct RTCRayHit query;
+    if (!find_nearest(ray_scene, &ray, &query)) {
         return false;
     }
+    struct ray_crossing crossing = crossing_of(ray_scene, &query.hit, query.ray.tfar);
     const struct scene *scene = ray_scene->scene;
-    uint32_t node_index = ray_scene->instance_nodes[query.hit.instID[0]];
-    const struct scene_node *node = &scene->nodes[node_index];
-    out_hit->node = node_index;
-    out_hit->primitive = scene->meshes[node->mesh].primitive_first + query.hit.geomID;
-    out_hit->triangle = query.hit.primID;
+    const struct scene_node *node = &scene->nodes[crossing.node];
+    out_hit->node = crossing.node;
+    out_hit->primitive = crossing.primitive;
+    out_hit->triangle = crossing.triangle;
     out_hit->material = scene->primitives[out_hit->primitive].material;
     out_hit->barycentric[0] = query.hit.u;
     out_hit->barycentric[1] = query.hit.v;

@@ -1,5 +1,4 @@
-// Ray casts against a scene's triangles by Embree: picking, and the reference path tracer
-// of the tests.
+// Ray casts against a scene's triangles by Embree: picking, and the reference path tracer.
 #ifndef VOXCAST_RENDERER_SCENE_RAY_SCENE_H
 #define VOXCAST_RENDERER_SCENE_RAY_SCENE_H
 
@@ -18,17 +17,67 @@ struct ray_hit {
     float normal[3];      // world, unit, geometric, facing the ray's origin
 };
 
+// From `origin` along `direction`; all finite, the direction not zero.
+struct ray {
+    float origin[3];
+    float direction[3];
+    float max_distance; // in units of the direction's length
+};
+
+// Where a ray meets a triangle, and no more: what a path tracer needs billions of times.
+struct ray_crossing {
+    uint32_t node;
+    uint32_t primitive; // in scene->primitives
+    uint32_t triangle;  // in the primitive
+    float barycentric[2];
+    float distance; // in units of the direction's length
+};
+
+// Whether a triangle stops the light of an occlusion query; called for those of materials that let
+// light pass, in any order.
+typedef bool ray_scene_stops_light(void *context, const struct ray_crossing *crossing);
+
+struct ray_scene_params {
+    const struct scene *scene;
+    const bool *lets_light_pass; // by material, copied; NULL: none does
+};
+
 // One Embree scene per mesh, instanced by the visible nodes. The scene must outlive the result.
 // Cost: building a BVH over all triangles. NULL when out of memory.
 struct ray_scene *ray_scene_create(const struct scene *scene);
+struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *params);
 void ray_scene_destroy(struct ray_scene **ray_scene);
 
 // Takes over node placement and visibility from the scene; cheap. Call after edits.
 void ray_scene_update_transforms(struct ray_scene *ray_scene);
 
+// Takes over from the scene which materials are alpha-masked: cheap unless that has changed, when
+// the meshes concerned are built anew. Call after edits of materials.
+void ray_scene_update_materials(struct ray_scene *ray_scene);
+
 // The nearest hit along the ray within (0, max_distance), through alpha-masked holes. False and
 // untouched output if there is none or an argument is not finite. Thread-safe between updates.
 bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3],
                          const float direction[3], float max_distance, struct ray_hit *out_hit);
+
+// The same for trusted rays: the nearest triangle, and little more than Embree's own cost.
+bool ray_scene_find(const struct ray_scene *ray_scene, const struct ray *ray,
+                    struct ray_crossing *out_crossing);
+
+// Whether anything opaque lies along the ray, alpha-masked holes aside. Surfaces that let light
+// pass are asked by `stops_light`, and with NULL stop none. Thread-safe between updates.
+bool ray_scene_is_occluded(const struct ray_scene *ray_scene, const struct ray *ray,
+                           ray_scene_stops_light *stops_light, void *context);
+
+// Rays for measuring how fast Embree alone is on this scene: nearest hits, or occlusion.
+struct ray_load {
+    struct ray ray;
+    bool is_shadow;
+};
+
+// Casts all of them in a bare loop, with no more around it than copying each ray. Returns how many
+// hit something.
+uint64_t ray_scene_cast_all(const struct ray_scene *ray_scene, const struct ray_load *rays,
+                            uint64_t count);
 
 #endif

@@ -4,7 +4,7 @@
 #define VOXCAST_TESTS_GPU_SUPPORT_GI_H
 
 #include "support_gpu.h"
-#include "support_path_tracer.h"
+#include "support_path.h"
 
 // Methods to be proved, in the order of `enum gi_method` without `none`.
 #define GI_PROVED_METHODS 2u

@@ -135,13 +135,75 @@ static void test_holes_of_masks(void **state)
     // The same picture does not matter to an opaque material, nor after the texture is shifted.
     material.alpha_mode = SCENE_ALPHA_OPAQUE;
     scene_set_material(scene, 0, &material);
+    ray_scene_update_materials(ray_scene);
     assert_true(cast_down(ray_scene, 0.5f, 0.1f, &hit));
     material.alpha_mode = SCENE_ALPHA_MASK;
     material.textures[SCENE_TEXTURE_BASE_COLOR].offset[0] = 0.5f;
     scene_set_material(scene, 0, &material);
+    ray_scene_update_materials(ray_scene);
     assert_true(cast_down(ray_scene, 0.5f, 0.1f, &hit));
     assert_false(cast_down(ray_scene, -0.5f, 0.1f, &hit));
+    // Shadows have the same holes.
+    const struct ray through = {{-0.5f, 0.1f, 5}, {0, 0, -1}, 100};
+    const struct ray blocked = {{0.5f, 0.1f, 5}, {0, 0, -1}, 100};
+    assert_false(ray_scene_is_occluded(ray_scene, &through, NULL, NULL));
+    assert_true(ray_scene_is_occluded(ray_scene, &blocked, NULL, NULL));
     ray_scene_destroy(&ray_scene);
+    scene_destroy(&scene);
+}
+
+struct asked {
+    uint32_t count;
+    struct ray_crossing last;
+    bool stops;
+};
+
+static bool note_crossing(void *context, const struct ray_crossing *crossing)
+{
+    struct asked *asked = context;
+    asked->count++;
+    asked->last = *crossing;
+    return asked->stops;
+}
+
+static void test_occlusion_asks_what_lets_light_pass(void **state)
+{
+    (void)state;
+    struct scene_material material;
+    scene_material_init(&material, "pane");
+    struct scene *scene = make_quad(&material);
+    const struct ray ray = {{0.5f, -0.25f, 5}, {0, 0, -2}, 100};
+    const struct ray beside = {{1.5f, 0, 5}, {0, 0, -2}, 100};
+    const struct ray shorter = {{0.5f, -0.25f, 5}, {0, 0, -2}, 2.4f};
+    for (int passes = 0; passes < 2; passes++) {
+        const bool lets_light_pass[1] = {passes == 1};
+        struct ray_scene *ray_scene = ray_scene_create_for_light(
+            &(struct ray_scene_params){.scene = scene, .lets_light_pass = lets_light_pass});
+        assert_non_null(ray_scene);
+        struct asked asked = {.stops = false};
+        assert_true(ray_scene_is_occluded(ray_scene, &ray, note_crossing, &asked) == !passes);
+        assert_int_equal(asked.count, passes);
+        assert_true(ray_scene_is_occluded(ray_scene, &ray, NULL, NULL) == !passes);
+        asked = (struct asked){.stops = true};
+        assert_true(ray_scene_is_occluded(ray_scene, &ray, note_crossing, &asked));
+        assert_int_equal(asked.count, passes);
+        assert_false(ray_scene_is_occluded(ray_scene, &beside, note_crossing, &asked));
+        assert_false(ray_scene_is_occluded(ray_scene, &shorter, note_crossing, &asked));
+        assert_int_equal(asked.count, passes);
+        // Nearest hits are found in any case.
+        struct ray_crossing crossing;
+        assert_true(ray_scene_find(ray_scene, &ray, &crossing));
+        assert_float_equal(crossing.distance, 2.5f, TOLERANCE);
+        assert_float_equal(crossing.barycentric[0], 0.375f, TOLERANCE);
+        assert_false(ray_scene_find(ray_scene, &shorter, &crossing));
+        if (passes) {
+            assert_float_equal(asked.last.distance, 2.5f, TOLERANCE);
+            assert_float_equal(asked.last.barycentric[1], 0.375f, TOLERANCE);
+        }
+        const struct ray_load load[3] = {{ray, false}, {beside, false}, {shorter, true}};
+        assert_int_equal(ray_scene_cast_all(ray_scene, load, 3), 1);
+        ray_scene_destroy(&ray_scene);
+    }
     scene_destroy(&scene);
 }
 
@@ -206,6 +268,7 @@ int main(void)
         cmocka_unit_test(test_hit_is_described),
         cmocka_unit_test(test_placement_and_visibility),
         cmocka_unit_test(test_holes_of_masks),
+        cmocka_unit_test(test_occlusion_asks_what_lets_light_pass),
         cmocka_unit_test(test_arguments_that_are_not_finite),
         cmocka_unit_test(test_empty_scene),
         cmocka_unit_test(test_cornell_box),

@@ -5,6 +5,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
+import { startDaemon, stopDaemon } from './client.mjs';
+
 const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
 const { chromium } = require('playwright-core');
 
@@ -46,6 +48,30 @@ export async function openClient(page, daemon) {
   await page.locator('#stage[data-frame]').waitFor();
   await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }));
   await untilStill(page);
+}
+
+/**
+ * A daemon with `scene` and a browser that shows its client. `problems` collects what the page throws;
+ * `close` ends both.
+ */
+export async function openScene(scene) {
+  const daemon = await startDaemon(['--scene', scene]);
+  let browser;
+  const close = async () => {
+    await browser?.close();
+    await stopDaemon(daemon);
+  };
+  try {
+    browser = await openBrowser();
+    const { page } = browser;
+    const problems = [];
+    page.on('pageerror', (error) => problems.push(error.message));
+    await openClient(page, daemon);
+    return { daemon, page, problems, close };
+  } catch (error) {
+    await close();
+    throw error;
+  }
 }
 
 /** Waits until this page's edits are shown and the picture is done and has not changed for `ms`. */

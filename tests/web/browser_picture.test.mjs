@@ -5,27 +5,19 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, describe, test } from 'node:test';
 
-import { difference, meanColor, openBrowser, openClient, pixels, untilStill } from './browser.mjs';
-import { startDaemon, stopDaemon } from './client.mjs';
+import { difference, meanColor, openScene, pixels, untilStill } from './browser.mjs';
 
 const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
 describe('the picture', () => {
-  let daemon, browser, page;
-  const problems = [];
+  let client, page;
 
   before(async () => {
-    daemon = await startDaemon(['--scene', 'builtin:cornell']);
-    browser = await openBrowser();
-    page = browser.page;
-    page.on('pageerror', (error) => problems.push(error.message));
-    await openClient(page, daemon);
+    client = await openScene('builtin:cornell');
+    ({ page } = client);
   });
-  after(async () => {
-    await browser?.close();
-    await stopDaemon(daemon);
-  });
+  after(() => client?.close());
 
   test('shows the red and the green wall', async () => {
     const left = await meanColor(page, { x: 0.15, y: 0.3, width: 0.08, height: 0.2 });
@@ -138,5 +130,5 @@ describe('the picture', () => {
     assert.ok(width <= 390, `the page is ${width} wide`);
   });
 
-  test('threw nothing', () => assert.deepEqual(problems, []));
+  test('threw nothing', () => assert.deepEqual(client.problems, []));
 });

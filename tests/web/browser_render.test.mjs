@@ -3,27 +3,22 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 
-import { openBrowser, openClient, setParameter, untilStill } from './browser.mjs';
-import { Client, startDaemon, stopDaemon } from './client.mjs';
+import { openScene, setParameter, untilStill } from './browser.mjs';
+import { Client } from './client.mjs';
 
 describe('the tab of rendering', () => {
-  let daemon, browser, page, other;
-  const problems = [];
+  let client, page, other;
 
   before(async () => {
-    daemon = await startDaemon(['--scene', 'builtin:cornell']);
-    browser = await openBrowser();
-    page = browser.page;
-    page.on('pageerror', (error) => problems.push(error.message));
-    await openClient(page, daemon);
+    client = await openScene('builtin:cornell');
+    ({ page } = client);
     await page.locator('#tab-render').click();
-    other = await Client.open(daemon.url);
+    other = await Client.open(client.daemon.url);
     await other.call('session.hello', { name: 'other' });
   });
   after(async () => {
     await other?.close();
-    await browser?.close();
-    await stopDaemon(daemon);
+    await client?.close();
   });
 
   const parameter = (name) => page.locator(`[data-parameter="${name}"]`);
@@ -113,5 +108,5 @@ describe('the tab of rendering', () => {
     assert.equal(await parameter('view.target_frame_ms').getAttribute('data-why'), 'adaptive only');
   });
 
-  test('threw nothing', () => assert.deepEqual(problems, []));
+  test('threw nothing', () => assert.deepEqual(client.problems, []));
 });

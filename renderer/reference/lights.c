@@ -1,0 +1,385 @@
+#include "renderer/reference/lights.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// The renderer's: nearer than this to a light (1 mm) the inverse square no longer grows.
+#define MIN_LIGHT_DISTANCE_SQUARED 1e-6f
+// Of more lights than these, so many are picked by their power before one is chosen.
+#define MAX_CANDIDATES 64u
+// Seen flatter than this, an emitter has no solid angle.
+#define MIN_EMITTER_COSINE 1e-6f
+
+struct punctual {
+    float3 position;
+    float3 direction; // unit, of shining
+    float3 intensity; // cd or lux
+    enum scene_light_type type;
+    bool casts_shadow;
+    float range_m;
+    float cone_scale, cone_offset;
+    float radius_m;
+    float power_end; // cumulative share of all lights' luminance
+};
+
+struct emitter {
+    float3 corner, edges[2];
+    float3 normal;   // unit, of the front
+    float3 radiance; // if it is the same everywhere
+    bool both_sides;
+    bool is_even; // else the surface must be looked up
+    struct ray_crossing place;
+};
+
+struct lights {
+    struct punctual *punctuals;
+    uint32_t punctual_count;
+    struct emitter *emitters;
+    float *power_ends; // by emitter: cumulative share of power
+    uint32_t emitter_count;
+    double power; // area times luminance
+};
+
+static void add_punctual(struct lights *lights, const struct snapshot *snapshot, uint32_t id)
+{
+    const struct scene_light *light = &snapshot->scene->lights[id];
+    float position[3], direction[3];
+    scene_get_light_placement(snapshot->scene, id, position, direction);
+    float inner = cosf(light->inner_cone_rad), outer = cosf(light->outer_cone_rad);
+    bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
+    float scale = 1.0f / fmaxf(0.001f, inner - outer);
+    lights->punctuals[lights->punctual_count++] = (struct punctual){
+        .position = load3(position),
+        .direction = load3(direction),
+        .intensity = load3(light->color) * light->intensity,
+        .type = light->type,
+        .casts_shadow = light->casts_shadow,
+        .range_m = directional ? 0.0f : light->range_m,
+        .cone_scale = scale,
+        .cone_offset = -outer * scale,
+        .radius_m = directional ? 0.0f : light->radius_m,
+    };
+}
+
+static bool find_punctuals(struct lights *lights, const struct snapshot *snapshot)
+{
+    const struct scene *scene = snapshot->scene;
+    lights->punctuals = aligned_alloc(16, (scene->light_count + 1) * sizeof(struct punctual));
+    if (!lights->punctuals)
+        return false;
+    for (uint32_t i = 0; i < scene->light_count; i++) {
+        const struct scene_light *light = &scene->lights[i];
+        if (light->enabled && !light->removed && light->intensity > 0.0f &&
+            max3(load3(light->color)) > 0.0f && scene->nodes[light->node].world_visible)
+            add_punctual(lights, snapshot, i);
+    }
+    double total = 0.0, sum = 0.0;
+    for (uint32_t i = 0; i < lights->punctual_count; i++)
+        total += (double)luminance3(lights->punctuals[i].intensity);
+    for (uint32_t i = 0; i < lights->punctual_count; i++) {
+        sum += (double)luminance3(lights->punctuals[i].intensity);
+        lights->punctuals[i].power_end = (float)(sum / total);
+    }
+    return true;
+}
+
+// False if the triangle has no area.
+static bool emitter_init(struct emitter *emitter, const struct snapshot *snapshot, uint32_t node,
+                         uint32_t primitive, uint32_t triangle)
+{
+    const struct material *material = snapshot_material(snapshot, primitive);
+    const uint32_t *indices = snapshot_triangle(snapshot, primitive, triangle);
+    float3 corners[3];
+    for (int i = 0; i < 3; i++)
+        corners[i] = instance_point(&snapshot->instances[node],
+                                    load3(snapshot->scene->vertices[indices[i]].position));
+    *emitter = (struct emitter){
+        .corner = corners[0],
+        .edges = {corners[1] - corners[0], corners[2] - corners[0]},
+        .radiance = material->emission,
+        .both_sides = material->double_sided,
+        .is_even = !(material->texture_mask & 1u << SCENE_TEXTURE_EMISSIVE) && !material->masked &&
+                   !material->blends,
+        .place = {.node = node, .primitive = primitive, .triangle = triangle},
+    };
+    float3 normal = cross3(emitter->edges[0], emitter->edges[1]);
+    emitter->normal = normalize3(snapshot->instances[node].mirrored ? -normal : normal);
+    float squared = dot3(normal, normal);
+    return squared > 0.0f && isfinite(squared);
+}
+
+static double emitter_power(const struct emitter *emitter, const struct material *material)
+{
+    return 0.5 * (double)length3(cross3(emitter->edges[0], emitter->edges[1])) *
+           (double)material->emitted_luminance;
+}
+
+// Counts the emissive triangles of a primitive, and lists them from `first` if there is a list.
+static uint32_t visit_primitive(struct lights *lights, const struct snapshot *snapshot,
+                                uint32_t node, uint32_t primitive, uint32_t first)
+{
+    const struct material *material = snapshot_material(snapshot, primitive);
+    uint32_t triangles =
+                 material->emits ? snapshot->scene->primitives[primitive].index_count / 3 : 0,
+             count = 0;
+    for (uint32_t i = 0; i < triangles; i++) {
+        struct emitter emitter;
+        if (!emitter_init(&emitter, snapshot, node, primitive, i))
+            continue;
+        if (lights->emitters) {
+            lights->power += emitter_power(&emitter, material);
+            lights->emitters[first + count] = emitter;
+        }
+        count++;
+    }
+    return count;
+}
+
+static uint32_t visit_emitters(struct lights *lights, const struct snapshot *snapshot)
+{
+    const struct scene *scene = snapshot->scene;
+    uint32_t count = 0;
+    for (uint32_t node = 0; node < scene->node_count; node++) {
+        const struct scene_node *source = &scene->nodes[node];
+        if (source->mesh == SCENE_NONE || !source->world_visible || source->removed)
+            continue;
+        const struct scene_mesh *mesh = &scene->meshes[source->mesh];
+        for (uint32_t i = 0; i < mesh->primitive_count; i++)
+            count += visit_primitive(lights, snapshot, node, mesh->primitive_first + i, count);
+    }
+    return count;
+}
+
+static bool find_emitters(struct lights *lights, const struct snapshot *snapshot)
+{
+    uint32_t count = visit_emitters(lights, snapshot);
+    lights->emitters = aligned_alloc(16, (count + 1) * sizeof(struct emitter));
+    lights->power_ends = malloc((count + 1) * sizeof(float));
+    if (!lights->emitters || !lights->power_ends)
+        return false;
+    visit_emitters(lights, snapshot);
+    double sum = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct emitter *emitter = &lights->emitters[i];
+        sum += emitter_power(emitter, snapshot_material(snapshot, emitter->place.primitive));
+        lights->power_ends[i] = (float)(sum / lights->power);
+    }
+    lights->emitter_count = isfinite(lights->power) && lights->power > 0.0 ? count : 0;
+    return true;
+}
+
+struct lights *lights_create(const struct snapshot *snapshot)
+{
+    struct lights *lights = calloc(1, sizeof(*lights));
+    if (lights && !(find_punctuals(lights, snapshot) && find_emitters(lights, snapshot)))
+        lights_destroy(&lights);
+    return lights;
+}
+
+void lights_destroy(struct lights **lights)
+{
+    if (*lights) {
+        free((*lights)->punctuals);
+        free((*lights)->emitters);
+        free((*lights)->power_ends);
+    }
+    free(*lights);
+    *lights = NULL;
+}
+
+bool lights_have_punctual(const struct lights *lights)
+{
+    return lights->punctual_count > 0;
+}
+
+bool lights_have_emitters(const struct lights *lights)
+{
+    return lights->emitter_count > 0;
+}
+
+static float spot_falloff(const struct punctual *light, float3 to_light)
+{
+    if (light->type != SCENE_LIGHT_SPOT)
+        return 1.0f;
+    float angular =
+        clamp01(-dot3(light->direction, to_light) * light->cone_scale + light->cone_offset);
+    return angular * angular;
+}
+
+// KHR_lights_punctual: inverse square, window of the range, angular falloff of spots. `radius_m`
+// does not matter here.
+static bool evaluate_punctual(const struct punctual *light, float3 position,
+                              struct light_sample *out_sample)
+{
+    out_sample->casts_shadow = light->casts_shadow;
+    if (light->type == SCENE_LIGHT_DIRECTIONAL) {
+        out_sample->distance = INFINITY;
+        out_sample->direction = -light->direction;
+        out_sample->light = light->intensity;
+        return true;
+    }
+    float3 to_light = light->position - position;
+    float squared = dot3(to_light, to_light);
+    if (!(squared > 0.0f))
+        return false;
+    out_sample->distance = sqrtf(squared);
+    out_sample->direction = to_light * (1.0f / out_sample->distance);
+    float strength = 1.0f / fmaxf(squared, MIN_LIGHT_DISTANCE_SQUARED);
+    if (light->range_m > 0.0f) {
+        float ratio = squared / (light->range_m * light->range_m);
+        strength *= clamp01(1.0f - ratio * ratio);
+    }
+    strength *= spot_falloff(light, out_sample->direction);
+    out_sample->light = light->intensity * strength;
+    return strength > 0.0f;
+}
+
+// Turns the sample of a light's middle into one of a random point of its sphere, uniform in solid
+// angle, so that it is as bright as the point was from afar. Unchanged within the sphere.
+static void spread_over_sphere(const struct punctual *light, const float u[2],
+                               struct light_sample *sample)
+{
+    float sine2 = light->radius_m * light->radius_m / (sample->distance * sample->distance);
+    if (!(light->radius_m > 0.0f) || sine2 >= 1.0f)
+        return;
+    // Radiance intensity / (pi r^2) over the cone's 2 pi (1 - cos).
+    float cone = sine2 / (1.0f + sqrtf(1.0f - sine2)); // 1 - cosine without cancellation
+    float brighter = 2.0f * cone / sine2;
+    float lower = u[0] * cone, cosine = 1.0f - lower;
+    float sine = sqrtf(fmaxf(lower * (2.0f - lower), 0.0f)), angle = 2.0f * (float)M_PI * u[1];
+    float3 x, y, middle = sample->direction;
+    basis3(middle, &x, &y);
+    float before = spot_falloff(light, middle);
+    sample->direction = x * (sine * cosf(angle)) + y * (sine * sinf(angle)) + middle * cosine;
+    sample->light *=
+        brighter * (before > 0.0f ? spot_falloff(light, sample->direction) / before : 0.0f);
+    float inside =
+        fmaxf(light->radius_m * light->radius_m - sample->distance * sample->distance * sine * sine,
+              0.0f);
+    sample->distance = sample->distance * cosine - sqrtf(inside);
+}
+
+// The first of `count` cumulative shares, `stride` floats apart, beyond `u`.
+static uint32_t find_share(const float *ends, size_t stride, uint32_t count, float u)
+{
+    uint32_t low = 0, high = count - 1;
+    while (low < high) {
+        uint32_t middle = (low + high) / 2;
+        if (ends[middle * stride] > u)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+// Weight by which a light is chosen: what it would give, roughly.
+static float choice_weight(const struct punctual *light, const struct light_sample *sample,
+                           float3 normal, bool both_sides)
+{
+    if (light->radius_m > 0.0f) // part of it may shine though its middle does not
+        return luminance3(sample->light);
+    float cosine = dot3(normal, sample->direction);
+    return luminance3(sample->light) * (both_sides ? fabsf(cosine) : fmaxf(cosine, 0.0f));
+}
+
+// One of the candidates that stand for many lights: evenly spaced in their cumulative power. Tells
+// how many lights it stands for.
+static uint32_t pick_candidate(const struct lights *lights, uint32_t number, float offset,
+                               float *out_scale)
+{
+    float u = ((float)number + offset) / (float)MAX_CANDIDATES;
+    uint32_t id = find_share(&lights->punctuals[0].power_end,
+                             sizeof(struct punctual) / sizeof(float), lights->punctual_count, u);
+    float begin = id > 0 ? lights->punctuals[id - 1].power_end : 0.0f;
+    float share = fmaxf(lights->punctuals[id].power_end - begin, 1e-30f);
+    *out_scale = 1.0f / (share * (float)MAX_CANDIDATES);
+    return id;
+}
+
+bool lights_sample_punctual(const struct lights *lights, float3 position, float3 normal,
+                            bool both_sides, const float choice[2], const float u[2],
+                            struct light_sample *out_sample)
+{
+    // One pass: each light replaces the chosen one with the probability of its share so far. Of
+    // many lights only candidates are looked at, and count for those that are not (Talbot et al.
+    // 2005, "Importance Resampling for Global Illumination").
+    bool many = lights->punctual_count > MAX_CANDIDATES;
+    uint32_t candidates = many ? MAX_CANDIDATES : lights->punctual_count, chosen = UINT32_MAX;
+    float total = 0.0f, chosen_weight = 0.0f, left = choice[0];
+    for (uint32_t i = 0; i < candidates; i++) {
+        float scale = 1.0f;
+        uint32_t id = many ? pick_candidate(lights, i, choice[1], &scale) : i;
+        struct light_sample sample = {0};
+        if (!evaluate_punctual(&lights->punctuals[id], position, &sample))
+            continue;
+        float weight = choice_weight(&lights->punctuals[id], &sample, normal, both_sides);
+        if (!(weight > 0.0f))
+            continue;
+        total += weight * scale;
+        float share = weight * scale / total;
+        if (left < share) {
+            *out_sample = sample;
+            chosen = id;
+            chosen_weight = weight;
+            left /= share;
+        } else {
+            left = (left - share) / (1.0f - share);
+        }
+    }
+    if (chosen == UINT32_MAX)
+        return false;
+    out_sample->light *= total / chosen_weight;
+    spread_over_sphere(&lights->punctuals[chosen], u, out_sample);
+    return true;
+}
+
+float lights_emitter_density(const struct lights *lights, const struct surface *emitter,
+                             float3 from)
+{
+    if (lights->emitter_count == 0)
+        return 0.0f;
+    float3 to_emitter = emitter->position - from;
+    float squared = dot3(to_emitter, to_emitter);
+    float cosine = -dot3(emitter->geometric_normal, to_emitter) / sqrtf(squared);
+    if (!(cosine > MIN_EMITTER_COSINE))
+        return 0.0f;
+    float per_area = (float)((double)emitter->material->emitted_luminance / lights->power);
+    return per_area * squared / cosine;
+}
+
+bool lights_sample_emitter(const struct lights *lights, const struct snapshot *snapshot,
+                           float3 position, float choice, const float u[2],
+                           struct light_sample *out_sample)
+{
+    uint32_t id = find_share(lights->power_ends, 1, lights->emitter_count, choice);
+    const struct emitter *emitter = &lights->emitters[id];
+    float root = sqrtf(u[0]), b = root * (1.0f - u[1]), c = root * u[1];
+    float3 to_emitter = emitter->corner + emitter->edges[0] * b + emitter->edges[1] * c - position;
+    float squared = dot3(to_emitter, to_emitter), distance = sqrtf(squared);
+    float3 direction = to_emitter * (1.0f / distance);
+    float cosine = -dot3(emitter->normal, direction);
+    if (emitter->both_sides)
+        cosine = fabsf(cosine);
+    if (!(cosine > MIN_EMITTER_COSINE))
+        return false;
+    const struct material *material = snapshot_material(snapshot, emitter->place.primitive);
+    *out_sample = (struct light_sample){
+        .direction = direction,
+        .distance = distance,
+        .light = emitter->radiance,
+        .lift = dot3(emitter->normal, direction) > 0.0f ? -emitter->normal : emitter->normal,
+        .density = (float)((double)material->emitted_luminance / lights->power) * squared / cosine,
+        .casts_shadow = true,
+    };
+    if (emitter->is_even)
+        return true;
+    struct ray_crossing place = emitter->place;
+    struct surface surface;
+    place.barycentric[0] = b;
+    place.barycentric[1] = c;
+    if (!surface_init(&surface, snapshot, &place, direction) || surface_is_hole(&surface))
+        return false;
+    out_sample->light = surface.emission * surface.coverage;
+    return max3(out_sample->light) > 0.0f;
+}

@@ -1,0 +1,50 @@
+// One path of light, from the camera backwards: the estimator of the reference.
+//
+// At each vertex one punctual light, one emitter and one direction of the environment are aimed at,
+// and one ray follows what the surface scatters; light found both ways is weighted by the power
+// heuristic (Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation"). Paths end by
+// chance (Russian roulette) once they carry little.
+//
+// Single-sided surfaces are as the rasteriser shows them: the camera sees through their backs. All
+// other rays stop there and find black, since what casts a shadow in the renderer blocks light from
+// both sides, and a side that is never shown has no colour. Blended surfaces and thin walls let
+// light pass straight through in proportion, from both sides likewise. Bodies (transmission and a
+// thickness) refract at both of their sides, tint where light enters, and absorb on the way; what
+// they hide from a punctual light is lit through them by chance alone, as a caustic is.
+#ifndef VOXCAST_RENDERER_REFERENCE_PATH_H
+#define VOXCAST_RENDERER_REFERENCE_PATH_H
+
+#include "renderer/camera.h"
+#include "renderer/reference/reference.h"
+#include "renderer/reference/snapshot.h"
+
+// What all paths of a picture share.
+struct path_setup {
+    const struct snapshot *snapshot;
+    struct camera_frame camera;
+    float3 eye; // in the snapshot's space
+    uint32_t width, height;
+    uint32_t max_bounces;
+    uint32_t layer_count;
+    uint64_t seed;
+    bool pixel_center;
+    bool aims_at_emitters, aims_at_environment;
+    bool finds_light; // rays that follow the surface count, too
+    bool rays_find;   // and there is light that they could find
+};
+
+void path_setup_init(struct path_setup *setup, const struct reference_params *params);
+
+// Rays that have been cast, and if `log` has room, what they were.
+struct path_rays {
+    uint64_t nearest;
+    uint64_t shadow;
+    struct ray_load *log; // NULL for none
+    uint64_t log_capacity;
+};
+
+// Adds the radiance of one sample of a pixel to `layers` (layer_count of them), in cd/m^2.
+void path_add_sample(const struct path_setup *setup, struct path_rays *rays, uint32_t x, uint32_t y,
+                     uint32_t sample, float3 *layers);
+
+#endif

@@ -1,0 +1,81 @@
+// Vectors of three floats in a SIMD register, which the path tracer spends its time on. The fourth
+// lane is alpha where there is one, else it means nothing.
+#ifndef VOXCAST_RENDERER_REFERENCE_VECTOR_H
+#define VOXCAST_RENDERER_REFERENCE_VECTOR_H
+
+#include <math.h>
+
+typedef float float3 __attribute__((vector_size(16)));
+
+static inline float3 make3(float x, float y, float z)
+{
+    return (float3){x, y, z, 0.0f};
+}
+
+static inline float3 splat3(float value)
+{
+    return (float3){value, value, value, value};
+}
+
+static inline float3 load3(const float values[3])
+{
+    return (float3){values[0], values[1], values[2], 0.0f};
+}
+
+static inline void store3(float out[3], float3 a)
+{
+    out[0] = a[0];
+    out[1] = a[1];
+    out[2] = a[2];
+}
+
+static inline float dot3(float3 a, float3 b)
+{
+    float3 product = a * b;
+    return product[0] + product[1] + product[2];
+}
+
+static inline float3 cross3(float3 a, float3 b)
+{
+    return make3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+}
+
+static inline float length3(float3 a)
+{
+    return sqrtf(dot3(a, a));
+}
+
+// Unit length; a vector without length stays as it is.
+static inline float3 normalize3(float3 a)
+{
+    float squared = dot3(a, a);
+    return squared > 0.0f ? a * (1.0f / sqrtf(squared)) : a;
+}
+
+static inline float max3(float3 a)
+{
+    return fmaxf(a[0], fmaxf(a[1], a[2]));
+}
+
+// Rec.709.
+static inline float luminance3(float3 rgb)
+{
+    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+}
+
+static inline float clamp01(float a)
+{
+    return fminf(fmaxf(a, 0.0f), 1.0f);
+}
+
+// Two axes perpendicular to a unit normal and to each other (Duff et al. 2017, "Building an
+// Orthonormal Basis, Revisited").
+static inline void basis3(float3 n, float3 *out_x, float3 *out_y)
+{
+    float sign = copysignf(1.0f, n[2]);
+    float a = -1.0f / (sign + n[2]), b = n[0] * n[1] * a;
+    *out_x = make3(1.0f + sign * n[0] * n[0] * a, sign * b, -sign * n[0]);
+    *out_y = make3(b, sign + n[1] * n[1] * a, -n[1]);
+}
+
+#endif

@@ -1,0 +1,71 @@
+#include "server/cli_shot.h"
+
+#include <stdio.h>
+
+#include "server/cli.h"
+
+void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target)
+{
+    target->camera = (struct cli_camera){0};
+    cli_take_size(parser, &target->size);
+    cli_take_gpu(parser, &target->gpu);
+    cli_take_camera(parser, &target->camera);
+    cli_take_settings(parser, &target->settings);
+}
+
+static bool apply_options(const struct cli_shot_options *options, enum quality preset,
+                          struct cli_shot *shot, struct error *out_error)
+{
+    struct frame_params *params = &shot->params;
+    struct view_options view;
+    render_settings_init(&params->settings);
+    view_options_init(&view);
+    view.width = options->size.width;
+    view.height = options->size.height;
+    if (!cli_camera_choose(&options->camera, shot->scene, (float)view.width / (float)view.height,
+                           &view.camera, out_error) ||
+        !cli_settings_apply(&options->settings, preset, shot->scene, &params->settings, &view,
+                            out_error))
+        return false;
+    params->width = view.width;
+    params->height = view.height;
+    params->camera = view.camera;
+    params->quality = view.quality;
+    params->debug_view = view.debug_view;
+    params->debug_level = view.debug_level;
+    params->debug_face = view.debug_face;
+    return true;
+}
+
+int cli_shot_open(const struct cli_shot_options *options, enum quality preset,
+                  struct cli_shot *out_shot)
+{
+    struct error error = {""};
+    struct cli_shot shot = {0};
+    int status = 0;
+    shot.scene = scene_load(options->source, &error);
+    if (!shot.scene)
+        return cli_fail(CLI_EXIT_SCENE, "%s", error.message);
+    for (uint32_t i = 0; i < shot.scene->warning_count; i++)
+        fprintf(stderr, "voxcast: warning: %s\n", shot.scene->warnings[i]);
+    if (!apply_options(options, preset, &shot, &error))
+        status = CLI_EXIT_USAGE;
+    if (status == 0) {
+        shot.renderer = renderer_create(&(struct renderer_params){.gpu = options->gpu}, &error);
+        if (!shot.renderer || !renderer_set_scene(shot.renderer, shot.scene, &error))
+            status = CLI_EXIT_RENDER;
+    }
+    if (status == 0) {
+        *out_shot = shot;
+        return 0;
+    }
+    cli_shot_close(&shot);
+    return cli_fail(status, "%s", error.message);
+}
+
+void cli_shot_close(struct cli_shot *shot)
+{
+    if (shot->renderer)
+        renderer_destroy(&shot->renderer);
+    scene_destroy(&shot->scene);
+}

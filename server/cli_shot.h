@@ -1,0 +1,31 @@
+// A scene, a renderer that shows it, and the frame that the options of a command ask for.
+#ifndef VOXCAST_SERVER_CLI_SHOT_H
+#define VOXCAST_SERVER_CLI_SHOT_H
+
+#include "server/cli_options.h"
+
+struct cli_shot_options {
+    const char *source; // file or builtin:NAME
+    const char *gpu;
+    struct cli_size size;
+    struct cli_camera camera;
+    struct cli_settings settings;
+};
+
+struct cli_shot {
+    struct scene *scene;
+    struct renderer *renderer;
+    struct frame_params params; // with FRAME_OUTPUT_YCBCR; the caller sets another
+};
+
+// Declares --size, --gpu and the options of camera and settings; initialises them but the size.
+void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target);
+
+// Loads the scene, prints its warnings, applies the options and starts the renderer. `preset` is
+// the quality if none is asked for. The exit status: 0, or that of a message on stderr; then
+// nothing needs closing.
+int cli_shot_open(const struct cli_shot_options *options, enum quality preset,
+                  struct cli_shot *out_shot);
+void cli_shot_close(struct cli_shot *shot);
+
+#endif
