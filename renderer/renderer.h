@@ -14,6 +14,8 @@
 #include "renderer/log.h"
 #include "renderer/reference/heat_map.h"
 #include "renderer/reference/image_metrics.h"
+#include "renderer/reference/ray_rate.h"
+#include "renderer/reference/reference.h"
 #include "renderer/scene/ray_scene.h"
 #include "renderer/scene/scene.h"
 #include "renderer/scene/scene_load.h"

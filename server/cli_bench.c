@@ -13,7 +13,7 @@
 
 static const char usage[] =
     "usage: voxcast bench [SCENE|builtin:NAME]... [OPTIONS]\n"
-    "       voxcast bench natus|effects|edit [OPTIONS]; see voxcast bench natus --help\n"
+    "       voxcast bench natus|effects|edit|reference [OPTIONS]; see voxcast bench natus --help\n"
     "\n"
     "Measures frames of a camera that sways around its target, for each scene (default: all\n"
     "built-in ones), and prints JSON.\n"
@@ -100,6 +100,8 @@ int cli_bench(int argc, char **argv)
         return bench_effects(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "edit") == 0)
         return bench_edit(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "reference") == 0)
+        return bench_reference(argc - 1, argv + 1);
     struct bench_options options = {.frames = DEFAULT_FRAMES, .quality = QUALITY_INTERACTIVE};
     struct cli_parser parser = {
         .command = "bench", .usage = usage, .max_arguments = CLI_MAX_ARGUMENTS};

@@ -45,5 +45,6 @@ uint64_t bench_memory_bytes(const struct bench_result *result); // all of it
 int bench_natus(int argc, char **argv);
 int bench_effects(int argc, char **argv);
 int bench_edit(int argc, char **argv);
+int bench_reference(int argc, char **argv);
 
 #endif

@@ -201,6 +201,7 @@ static float3 sample_half(const struct bsdf *bsdf, const float u[2])
 bool bsdf_sample(const struct bsdf *bsdf, float choice, const float u[2], float3 *out_direction,
                  struct scattering *out_scattering)
 {
+    bool transmits = choice >= bsdf->p_diffuse + bsdf->p_gloss;
     if (choice < bsdf->p_diffuse) {
         float3 x, y;
         basis3(bsdf->normal, &x, &y);
@@ -212,7 +213,7 @@ bool bsdf_sample(const struct bsdf *bsdf, float choice, const float u[2], float3
         float v_h = dot3(bsdf->view, half);
         if (!(v_h > 0.0f))
             return false;
-        if (choice < bsdf->p_diffuse + bsdf->p_gloss) {
+        if (!transmits) {
             *out_direction = normalize3(half * (2.0f * v_h) - bsdf->view);
         } else {
             float squared = 1.0f - bsdf->eta * bsdf->eta * (1.0f - v_h * v_h);
@@ -222,5 +223,8 @@ bool bsdf_sample(const struct bsdf *bsdf, float choice, const float u[2], float3
                 normalize3(half * (bsdf->eta * v_h - sqrtf(squared)) - bsdf->view * bsdf->eta);
         }
     }
+    // Microfacets of a rough surface send some light to the wrong side of it: that is lost.
+    if (transmits != (dot3(bsdf->geometric_normal, *out_direction) <= 0.0f))
+        return false;
     return bsdf_evaluate(bsdf, *out_direction, out_scattering) && out_scattering->density > 0.0f;
 }

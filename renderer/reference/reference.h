@@ -45,10 +45,22 @@ enum reference_layer {
 #define REFERENCE_DIRECT_LAYERS   (REFERENCE_LAYER(REFERENCE_FIRST_BOUNCE) - 1u)
 #define REFERENCE_INDIRECT_LAYERS (~REFERENCE_DIRECT_LAYERS)
 
+// An immutable copy of what light depends on in a scene, made by the thread that may edit that: the
+// document may be edited as soon as snapshot_create() has returned. Counted: references of many
+// cameras and threads share one.
+struct scene;
 struct snapshot;
 
+// Copies the scene and builds its BVH; the caller holds one reference count.
+// `all_blinn_phong` says that every material is to be Blinn-Phong (SHADING_MODEL_BLINN_PHONG).
+// Cost: seconds for millions of triangles. NULL with a message when memory ends.
+struct snapshot *snapshot_create(const struct scene *scene, bool all_blinn_phong,
+                                 struct error *out_error);
+struct snapshot *snapshot_retain(struct snapshot *snapshot); // any thread
+void snapshot_release(struct snapshot **snapshot);           // any thread; leaves NULL
+
 struct reference_params {
-    struct snapshot *scene; // see snapshot.h; the reference keeps one of its own
+    struct snapshot *scene; // the reference keeps a count of its own
     struct view_camera camera;
     uint32_t width, height;
     uint32_t max_bounces;     // of indirect light: light is reflected at most 1 + max_bounces times

@@ -165,7 +165,7 @@ static bool fill_tables(struct snapshot *snapshot, bool all_blinn_phong)
     return done && snapshot->rays;
 }
 
-struct snapshot *snapshot_create(const struct scene *scene, bool shading_model_blinn_phong,
+struct snapshot *snapshot_create(const struct scene *scene, bool all_blinn_phong,
                                  struct error *out_error)
 {
     struct snapshot *snapshot = calloc(1, sizeof(*snapshot));
@@ -176,7 +176,7 @@ struct snapshot *snapshot_create(const struct scene *scene, bool shading_model_b
     if (!snapshot->scene)
         goto fail;
     move_to_origin(snapshot);
-    if (!fill_tables(snapshot, shading_model_blinn_phong))
+    if (!fill_tables(snapshot, all_blinn_phong))
         goto fail;
     snapshot->lights = lights_create(snapshot);
     snapshot->environment = environment_create(&snapshot->scene->environment);

@@ -1,16 +1,15 @@
 // A scene as the path tracer sees it: an immutable copy of what light depends on.
 //
-// The document belongs to one thread, which may go on editing it as soon as snapshot_create() has
-// returned: geometry, placements, materials, lights and environment are copied, pictures are shared
-// by reference count (they never change). A snapshot is counted, too: many references of different
-// cameras and threads share one. Everything is moved so that the middle of the scene's bounds lies
-// in the origin, where floats are fine: `origin` has been subtracted.
+// Geometry, placements, materials, lights and environment are copied, pictures are shared by
+// reference count (they never change). Everything is moved so that the middle of the scene's bounds
+// lies in the origin, where floats are fine: `origin` has been subtracted. See reference.h for how
+// snapshots are made.
 #ifndef VOXCAST_RENDERER_REFERENCE_SNAPSHOT_H
 #define VOXCAST_RENDERER_REFERENCE_SNAPSHOT_H
 
 #include <stddef.h>
 
-#include "renderer/error.h"
+#include "renderer/reference/reference.h"
 #include "renderer/reference/texture.h"
 #include "renderer/scene/ray_scene.h"
 
@@ -59,16 +58,6 @@ struct snapshot {
     float diagonal_m;
     bool has_bodies; // some material refracts
 };
-
-// Copies the scene and builds its BVH and tables. Cost: seconds for millions of triangles. Runs on
-// the thread that may edit the scene; the caller holds one reference. `shading_model_blinn_phong`
-// says that all materials are to be Blinn-Phong. NULL with a message when memory ends.
-struct snapshot *snapshot_create(const struct scene *scene, bool shading_model_blinn_phong,
-                                 struct error *out_error);
-
-// Any thread.
-struct snapshot *snapshot_retain(struct snapshot *snapshot);
-void snapshot_release(struct snapshot **snapshot);
 
 static inline float3 instance_point(const struct instance *instance, float3 local)
 {

@@ -22,7 +22,8 @@ vec3 trace_gloss(vec3 position_world, vec3 normal, vec3 direction, float roughne
     c.direction = direction;
     c.tangent = lobe_tangent(roughness);
     c.step = min(voxels.pixel_march.x, 1.0);
-    c.widest = 4.0 * voxels.light.w;
+    // As wide as a voxel of the coarsest level or mip, but no wider than four of the coarsest level.
+    c.widest = min(4.0 * voxels.light.w, voxels.levels[voxels.counts.x - 1u].size.x);
     c.reach_m = 1e30;
     cone_light found = trace_cone(c, 1.0);
     vec3 light = found.light * voxels.anchor.w;
