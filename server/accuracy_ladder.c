@@ -236,7 +236,8 @@ bool rung_apply(const struct rung *rung, struct frame_params *params, struct err
         if (!document_set_text(NULL, &params->settings, NULL, key, rung->sets[i].value, &error))
             return error_set(out_error, "rung %s: %.400s", rung->name, error.message);
     }
-    return true;
+    return params->settings.gi_method != GI_METHOD_REFERENCE ||
+           error_set(out_error, "rung %s: the reference is the truth, and no rung", rung->name);
 }
 
 cJSON *rung_json(const struct rung *rung)

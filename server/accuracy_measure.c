@@ -252,17 +252,6 @@ static bool judge_picture(struct rung_work *work, const char *state, struct pict
     return done;
 }
 
-static void show(const struct accuracy *accuracy, const struct picture *picture, uint8_t *out_rgb)
-{
-    size_t count = picture_pixel_count(picture);
-    for (size_t i = 0; i < count; i++) {
-        float display[3];
-        display_pixel(&accuracy->display, picture->rgb + 3 * i, display);
-        for (size_t c = 0; c < 3; c++)
-            out_rgb[3 * i + c] = (uint8_t)(255.0f * display[c] + 0.5f);
-    }
-}
-
 // Writes NAME-SUFFIX.png into the folder and notes it in the entry.
 static bool write_png(struct rung_work *work, cJSON *pictures, const char *suffix, uint32_t width,
                       uint32_t height, const uint8_t *rgb, struct error *out_error)
@@ -286,9 +275,9 @@ static bool write_pictures(struct rung_work *work, struct error *out_error)
     bool done = parts && strip;
     if (done) {
         cJSON *pictures = cJSON_AddObjectToObject(work->entry, "pictures");
-        show(work->accuracy, truth, parts);
-        show(work->accuracy, &work->cold, parts + bytes);
-        show(work->accuracy, &work->converged, parts + 2 * bytes);
+        display_bytes(&work->accuracy->display, truth, parts);
+        display_bytes(&work->accuracy->display, &work->cold, parts + bytes);
+        display_bytes(&work->accuracy->display, &work->converged, parts + 2 * bytes);
         heat_map_colors(work->flip_map, bytes / 3, parts + 3 * bytes);
         for (uint32_t y = 0; y < height; y++)
             for (uint32_t i = 0; i < STRIP_PICTURES; i++)

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/reference/reference.h"
-#include "renderer/reference/snapshot.h"
 #include "server/accuracy.h"
 #include "server/cli_bench.h"
 

@@ -113,16 +113,10 @@ static bool write_reference_png(const struct accuracy *accuracy, struct error *o
 {
     const struct picture *truth = &accuracy->truth.picture;
     char path[4096];
-    size_t count = picture_pixel_count(truth);
-    uint8_t *rgb = malloc(3 * count);
+    uint8_t *rgb = malloc(3 * picture_pixel_count(truth));
     if (!rgb)
         return error_set(out_error, "out of memory");
-    for (size_t i = 0; i < count; i++) {
-        float display[3];
-        display_pixel(&accuracy->display, truth->rgb + 3 * i, display);
-        for (size_t c = 0; c < 3; c++)
-            rgb[3 * i + c] = (uint8_t)(255.0f * display[c] + 0.5f);
-    }
+    display_bytes(&accuracy->display, truth, rgb);
     snprintf(path, sizeof(path), "%s/reference.png", accuracy->folder);
     bool done = cli_write_png(path, truth->width, truth->height, rgb, out_error);
     free(rgb);
