@@ -126,9 +126,10 @@ static const struct parameter parameters[] = {
     FLOAT_(GROUP_ENVIRONMENT, "rotation_rad", -FULL_TURN_RAD, FULL_TURN_RAD, 0.01, "rad", "0",
            "Turns the surroundings about the vertical."),
 
-    ENUM_(GROUP_SETTINGS, "gi_method", 0, GI_METHOD_DEFAULT, NAMES("none", "clipmap", "grid"),
-          "How indirect light is found: not at all, by voxels around the camera, or around the "
-          "whole scene."),
+    ENUM_(GROUP_SETTINGS, "gi_method", 0, GI_METHOD_DEFAULT,
+          NAMES("none", "clipmap", "grid", "reference"),
+          "How indirect light is found: not at all, by voxels around the camera, around the whole "
+          "scene, or by tracing paths until the picture is right."),
     ENUM_(GROUP_SETTINGS, "voxel_resolution", 0, "\"auto\"", NAMES("auto", "64", "128", "256"),
           "Voxels along an edge of a cube; 256 is for the grid, clipmaps take 128."),
     ENUM_(GROUP_SETTINGS, "voxel_directions", 0, "\"anisotropic\"",

@@ -73,9 +73,11 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
         EFFECT_INDIRECT_DIFFUSE,  EFFECT_BOUNCE,       EFFECT_INDIRECT_SPECULAR,
         EFFECT_REFRACTION,        EFFECT_SOFT_SHADOWS, EFFECT_AMBIENT_OCCLUSION,
         EFFECT_ENVIRONMENT_LIGHT, EFFECT_VOXEL_COLORS, EFFECT_CLIP_LEVELS};
-    if (settings->gi_method == GI_METHOD_NONE) {
+    if (settings->gi_method == GI_METHOD_NONE || settings->gi_method == GI_METHOD_REFERENCE) {
         for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
-            decide(plan, all[i], false, "no global illumination chosen");
+            decide(plan, all[i], false,
+                   settings->gi_method == GI_METHOD_NONE ? "no global illumination chosen"
+                                                         : "the method is reference");
         return 0;
     }
     bool environment = settings->environment_light && has_environment(resident);

@@ -12,6 +12,7 @@
 
 #include "renderer/error.h"
 #include "renderer/log.h"
+#include "renderer/reference/display.h"
 #include "renderer/reference/heat_map.h"
 #include "renderer/reference/image_metrics.h"
 #include "renderer/reference/ray_rate.h"

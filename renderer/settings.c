@@ -1,6 +1,6 @@
 #include "renderer/settings.h"
 
-const char *const gi_method_names[GI_METHOD_COUNT] = {"none", "clipmap", "grid"};
+const char *const gi_method_names[GI_METHOD_COUNT] = {"none", "clipmap", "grid", "reference"};
 
 const char *const voxel_resolution_names[VOXEL_RESOLUTION_COUNT] = {"auto", "64", "128", "256"};
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "server/cli.h"
-#include "server/cli_shot.h"
+#include "server/cli_reference.h"
 
 #define MAX_FRAMES 100000
 
@@ -16,7 +16,7 @@ static const char usage[] =
     "  --eye X,Y,Z --target X,Y,Z [--up X,Y,Z]   a camera of your own, in metres\n"
     "  --fov-y-deg D        vertical field of view in degrees, 0.1 to 179\n"
     "  --size WxH           1x1 to 3840x2160 (default 1280x720)\n"
-    "  --gi METHOD          method of global illumination: none, clipmap or grid\n"
+    "  --gi METHOD          method of global illumination: none, clipmap, grid or reference\n"
     "  --preset NAME        draft, interactive, high or final (default: final; with several\n"
     "                       frames: interactive)\n"
     "  --view VIEW          final, direct, albedo, normal, roughness, metallic, emission, depth,\n"
@@ -31,10 +31,24 @@ static const char usage[] =
     "  --move-eye X,Y,Z     with --frames: displacement of eye and target per frame, in metres\n"
     "  --converge-first     with --frames: let the first picture converge before measuring\n"
     "  --stats FILE         write statistics as JSON\n"
-    "  --gpu WHICH          auto, software or a device index (default auto)\n";
+    "  --gpu WHICH          auto, software or a device index (default auto)\n"
+    "\n"
+    "With --gi reference, ground truth by a path tracer on the CPU:\n"
+    "  --spp N              samples per pixel (default 64, or as many as time and noise allow)\n"
+    "  --time S             at most so many seconds\n"
+    "  --noise X            until the estimated standard error of pixels is below this share of\n"
+    "                       the mean luminance\n"
+    "  --bounces N          of indirect light, 0 or more (default: the parameter's, unlimited)\n"
+    "  --light WHICH        all, direct (reflected once at most) or indirect\n"
+    "  --bounce N           light of one bounce alone: 1 is reflected twice, up to 7\n"
+    "  --estimator NAME     how light is found: by aiming at lights, by following surfaces, or\n"
+    "                       both (default)\n"
+    "  --seed N             the same seed gives the same picture\n"
+    "  --threads N          default: as many as there are processors\n";
 
 struct render_options {
     struct cli_shot_options shot;
+    struct cli_reference_options reference;
     const char *out, *stats;
     struct cli_vector move;
     bool converge_first;
@@ -65,6 +79,7 @@ static bool parse_options(int argc, char **argv, struct render_options *options,
     struct cli_parser parser = {.command = "render", .usage = usage, .max_arguments = 1};
     *options = (struct render_options){.shot.size = {1280, 720}};
     cli_take_shot(&parser, &options->shot);
+    cli_take_reference(&parser, &options->reference);
     cli_take_text(&parser, "out", &options->out);
     cli_take_text(&parser, "stats", &options->stats);
     cli_take_count(&parser, "frames", 1, MAX_FRAMES, &options->frames);
@@ -83,17 +98,6 @@ static void move_camera(struct view_camera *camera, const float move[3])
         camera->eye[axis] += move[axis];
         camera->target[axis] += move[axis];
     }
-}
-
-static bool write_json(const char *path, struct cJSON *json, struct error *out_error)
-{
-    char *text = cJSON_Print(json);
-    FILE *file = text ? fopen(path, "wb") : NULL;
-    bool done = file && fputs(text, file) >= 0 && fputc('\n', file) != EOF;
-    if (file)
-        done = fclose(file) == 0 && done;
-    cJSON_free(text);
-    return done || error_set(out_error, "cannot write \"%s\"", path);
 }
 
 // What the frames of one command share.
@@ -184,7 +188,7 @@ static int write_statistics(const struct render_job *job)
     cJSON_AddNumberToObject(json, "convergence", (double)job->convergence);
     if (job->options->frames == 0)
         cJSON_AddBoolToObject(json, "converged", job->converged);
-    bool done = write_json(job->options->stats, json, &error);
+    bool done = cli_write_json(job->options->stats, json, &error);
     cJSON_Delete(json);
     return done ? 0 : cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
 }
@@ -214,8 +218,15 @@ int cli_render(int argc, char **argv)
     int status;
     if (!parse_options(argc, argv, &options, &status))
         return status;
-    status = cli_shot_open(&options.shot, options.frames > 1 ? QUALITY_INTERACTIVE : QUALITY_FINAL,
+    status = cli_shot_load(&options.shot, options.frames > 1 ? QUALITY_INTERACTIVE : QUALITY_FINAL,
                            &shot);
+    if (status == 0 && shot.params.settings.gi_method == GI_METHOD_REFERENCE) {
+        status = cli_render_reference(&options.reference, &shot, options.out, options.stats);
+        cli_shot_close(&shot);
+        return status;
+    }
+    if (status == 0)
+        status = cli_shot_start(&options.shot, &shot);
     if (status != 0)
         return status;
     cli_output_of(options.out, &shot.params.output);

@@ -37,30 +37,38 @@ static bool apply_options(const struct cli_shot_options *options, enum quality p
     return true;
 }
 
-int cli_shot_open(const struct cli_shot_options *options, enum quality preset,
+int cli_shot_load(const struct cli_shot_options *options, enum quality preset,
                   struct cli_shot *out_shot)
 {
     struct error error = {""};
-    struct cli_shot shot = {0};
-    int status = 0;
-    shot.scene = scene_load(options->source, &error);
+    struct cli_shot shot = {.scene = scene_load(options->source, &error)};
     if (!shot.scene)
         return cli_fail(CLI_EXIT_SCENE, "%s", error.message);
     for (uint32_t i = 0; i < shot.scene->warning_count; i++)
         fprintf(stderr, "voxcast: warning: %s\n", shot.scene->warnings[i]);
-    if (!apply_options(options, preset, &shot, &error))
-        status = CLI_EXIT_USAGE;
-    if (status == 0) {
-        shot.renderer = renderer_create(&(struct renderer_params){.gpu = options->gpu}, &error);
-        if (!shot.renderer || !renderer_set_scene(shot.renderer, shot.scene, &error))
-            status = CLI_EXIT_RENDER;
+    if (!apply_options(options, preset, &shot, &error)) {
+        cli_shot_close(&shot);
+        return cli_fail(CLI_EXIT_USAGE, "%s", error.message);
     }
-    if (status == 0) {
-        *out_shot = shot;
+    *out_shot = shot;
+    return 0;
+}
+
+int cli_shot_start(const struct cli_shot_options *options, struct cli_shot *shot)
+{
+    struct error error = {""};
+    shot->renderer = renderer_create(&(struct renderer_params){.gpu = options->gpu}, &error);
+    if (shot->renderer && renderer_set_scene(shot->renderer, shot->scene, &error))
         return 0;
-    }
-    cli_shot_close(&shot);
-    return cli_fail(status, "%s", error.message);
+    cli_shot_close(shot);
+    return cli_fail(CLI_EXIT_RENDER, "%s", error.message);
+}
+
+int cli_shot_open(const struct cli_shot_options *options, enum quality preset,
+                  struct cli_shot *out_shot)
+{
+    int status = cli_shot_load(options, preset, out_shot);
+    return status == 0 ? cli_shot_start(options, out_shot) : status;
 }
 
 void cli_shot_close(struct cli_shot *shot)

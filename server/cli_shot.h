@@ -21,9 +21,16 @@ struct cli_shot {
 // Declares --size, --gpu and the options of camera and settings; initialises them but the size.
 void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target);
 
-// Loads the scene, prints its warnings, applies the options and starts the renderer. `preset` is
-// the quality if none is asked for. The exit status: 0, or that of a message on stderr; then
+// Loads the scene, prints its warnings and applies the options; there is no renderer then. `preset`
+// is the quality if none is asked for. The exit status: 0, or that of a message on stderr; then
 // nothing needs closing.
+int cli_shot_load(const struct cli_shot_options *options, enum quality preset,
+                  struct cli_shot *out_shot);
+
+// Starts the renderer of a loaded shot. If that fails, the shot is closed.
+int cli_shot_start(const struct cli_shot_options *options, struct cli_shot *shot);
+
+// Both.
 int cli_shot_open(const struct cli_shot_options *options, enum quality preset,
                   struct cli_shot *out_shot);
 void cli_shot_close(struct cli_shot *shot);

@@ -15,6 +15,12 @@ static float smith_lambda(float cosine, float alpha)
     return 0.5f * (sqrtf(1.0f + alpha * alpha * (1.0f - c2) / c2) - 1.0f);
 }
 
+// Blinn-Phong's, of a lobe about as wide.
+static float exponent_of(float alpha)
+{
+    return min1(max1(2.0f / (alpha * alpha) - 2.0f, 1.0f), MAX_EXPONENT);
+}
+
 // What the dielectric layer reflects. From within a body the angle beyond decides, and where there
 // is none all is reflected.
 static float3 dielectric_fresnel(const struct bsdf *bsdf, float v_h)
@@ -37,24 +43,24 @@ static float3 gloss_fresnel(const struct bsdf *bsdf, float3 dielectric, float v_
 }
 
 // Follows each lobe about as often as it scatters.
-static void choose_probabilities(struct bsdf *bsdf, bool has_gloss, enum bsdf_lobes lobes)
+static void choose_probabilities(struct bsdf *bsdf, enum bsdf_lobes lobes)
 {
     float3 dielectric = dielectric_fresnel(bsdf, bsdf->n_v);
     float3 through = splat3(1.0f) - dielectric;
-    float gloss = has_gloss ? fmaxf(max3(gloss_fresnel(bsdf, dielectric, bsdf->n_v)), 1e-6f) : 0.0f;
+    float gloss = max1(max3(gloss_fresnel(bsdf, dielectric, bsdf->n_v)), 1e-6f);
     float diffuse = max3(bsdf->diffuse) * (1.0f - max3(dielectric));
     float transmit = max3(bsdf->tint) * max3(through);
-    diffuse = max3(bsdf->diffuse) > 0.0f ? fmaxf(diffuse, 1e-6f) : 0.0f;
-    transmit = max3(bsdf->tint) > 0.0f ? fmaxf(transmit, 1e-6f) : 0.0f;
+    diffuse = max3(bsdf->diffuse) > 0.0f ? max1(diffuse, 1e-6f) : 0.0f;
+    transmit = max3(bsdf->tint) > 0.0f ? max1(transmit, 1e-6f) : 0.0f;
     if (lobes == BSDF_TRANSMISSION)
         gloss = diffuse = 0.0f;
     float sum = gloss + diffuse + transmit;
     if (!(sum > 0.0f))
         return;
     float least = MIN_PROBABILITY * sum;
-    gloss = gloss > 0.0f ? fmaxf(gloss, least) : 0.0f;
-    diffuse = diffuse > 0.0f ? fmaxf(diffuse, least) : 0.0f;
-    transmit = transmit > 0.0f ? fmaxf(transmit, least) : 0.0f;
+    gloss = gloss > 0.0f ? max1(gloss, least) : 0.0f;
+    diffuse = diffuse > 0.0f ? max1(diffuse, least) : 0.0f;
+    transmit = transmit > 0.0f ? max1(transmit, least) : 0.0f;
     float scale = 1.0f / (gloss + diffuse + transmit);
     bsdf->p_gloss = gloss * scale;
     bsdf->p_diffuse = diffuse * scale;
@@ -69,7 +75,7 @@ void bsdf_init(struct bsdf *bsdf, const struct surface *surface, float eta, enum
         .geometric_normal = surface->geometric_normal,
         .view = surface->view,
         .n_v = dot3(surface->normal, surface->view),
-        .alpha = fmaxf(surface->roughness * surface->roughness, MIN_ALPHA),
+        .alpha = max1(surface->roughness * surface->roughness, MIN_ALPHA),
         .base_color = surface->base_color,
         .f0 = surface->f0,
         .f90 = surface->f90,
@@ -91,11 +97,21 @@ void bsdf_init(struct bsdf *bsdf, const struct surface *surface, float eta, enum
     bool has_gloss = surface->metallic > 0.0f || surface->f90 > 0.0f || max3(surface->f0) > 0.0f ||
                      material->refracts;
     if (material->blinn_phong)
-        bsdf->exponent =
-            fminf(fmaxf(2.0f / (bsdf->alpha * bsdf->alpha) - 2.0f, 1.0f), MAX_EXPONENT);
-    if (has_gloss)
-        bsdf->lambda_v = smith_lambda(bsdf->n_v, bsdf->alpha);
-    choose_probabilities(bsdf, has_gloss, lobes);
+        bsdf->exponent = exponent_of(bsdf->alpha);
+    if (!has_gloss) {
+        bsdf->p_diffuse = lobes == BSDF_ALL && max3(bsdf->diffuse) > 0.0f ? 1.0f : 0.0f;
+        return;
+    }
+    bsdf->lambda_v = smith_lambda(bsdf->n_v, bsdf->alpha);
+    choose_probabilities(bsdf, lobes);
+}
+
+void bsdf_widen(struct bsdf *bsdf, float alpha)
+{
+    bsdf->alpha = max1(bsdf->alpha, alpha);
+    bsdf->lambda_v = smith_lambda(bsdf->n_v, bsdf->alpha);
+    if (bsdf->exponent > 0.0f)
+        bsdf->exponent = exponent_of(bsdf->alpha);
 }
 
 // Trowbridge-Reitz, by the sine for the sake of narrow lobes.
@@ -117,7 +133,7 @@ static void add_gloss(const struct bsdf *bsdf, float3 half, float v_h, float n_l
         float power = powf(n_h, bsdf->exponent);
         scattering->share += fresnel * ((bsdf->exponent + 8.0f) / (8.0f * PI) * power * n_l);
         scattering->density += bsdf->p_gloss * (bsdf->exponent + 1.0f) / (2.0f * PI) * power /
-                               (4.0f * fmaxf(v_h, 1e-6f));
+                               (4.0f * max1(v_h, 1e-6f));
         return;
     }
     float d = distribution(bsdf, half, n_h) / (4.0f * bsdf->n_v);
@@ -142,7 +158,7 @@ static bool evaluate_transmission(const struct bsdf *bsdf, float3 direction, flo
     float bend = bsdf->eta * v_h + l_h;
     // Density of the visible normal, times what a normal's solid angle becomes in directions.
     float visible = distribution(bsdf, half, n_h) / (1.0f + bsdf->lambda_v) * v_h / bsdf->n_v *
-                    -l_h / fmaxf(bend * bend, 1e-20f);
+                    -l_h / max1(bend * bend, 1e-20f);
     float3 kept = splat3(1.0f) - dielectric_fresnel(bsdf, v_h);
     float masking = 1.0f / (1.0f + smith_lambda(-n_l, bsdf->alpha));
     out_scattering->share = bsdf->tint * kept * (visible * masking);
@@ -181,7 +197,7 @@ static float3 sample_visible_normal(const struct bsdf *bsdf, float3 x, float3 y,
     float z = 1.0f - u[1] * (1.0f + view[2]);
     float sine = sqrtf(clamp01(1.0f - z * z));
     float3 half = make3(sine * cosf(angle), sine * sinf(angle), z) + view;
-    return normalize3(make3(half[0] * alpha, half[1] * alpha, fmaxf(half[2], 1e-7f)));
+    return normalize3(make3(half[0] * alpha, half[1] * alpha, max1(half[2], 1e-7f)));
 }
 
 static float3 sample_half(const struct bsdf *bsdf, const float u[2])

@@ -31,6 +31,9 @@ enum bsdf_lobes { BSDF_ALL, BSDF_TRANSMISSION };
 // `eta` as above; 1 where nothing refracts. BSDF_TRANSMISSION leaves all reflection out.
 void bsdf_init(struct bsdf *bsdf, const struct surface *surface, float eta, enum bsdf_lobes lobes);
 
+// The same with lobes of at least this width.
+void bsdf_widen(struct bsdf *bsdf, float alpha);
+
 struct scattering {
     float3 share;  // BSDF times cosine, per steradian
     float density; // per steradian, of bsdf_sample() choosing this direction

@@ -33,7 +33,7 @@ static float3 picture_texel(const struct scene_environment *source, int64_t colu
 static float3 picture_at(const struct scene_environment *source, float3 direction)
 {
     float u = 0.5f + atan2f(direction[0], -direction[2]) / (2.0f * PI);
-    float v = acosf(fminf(fmaxf(direction[1], -1.0f), 1.0f)) / PI;
+    float v = acosf(min1(max1(direction[1], -1.0f), 1.0f)) / PI;
     float x = u * (float)source->width - 0.5f, y = v * (float)source->height - 0.5f;
     int64_t column = (int64_t)floorf(x), row = (int64_t)floorf(y);
     float across = x - floorf(x), down = y - floorf(y);
@@ -76,7 +76,7 @@ static float cell_luminance(const struct environment *environment, uint32_t colu
     float sum = 0.0f;
     for (uint32_t y = top; y < bottom; y++)
         for (uint32_t x = left; x < right; x++)
-            sum += fmaxf(luminance3(picture_texel(source, x, y)), 0.0f);
+            sum += max1(luminance3(picture_texel(source, x, y)), 0.0f);
     return sum / (float)((right - left) * (bottom - top));
 }
 
@@ -91,7 +91,7 @@ static float spread_luminance(const struct environment *environment, const float
             uint32_t x = (column + columns + dx - 1) % columns;
             int64_t y = (int64_t)row + dy;
             if (y >= 0 && y < rows)
-                largest = fmaxf(largest, 0.5f * luminances[(size_t)y * columns + x]);
+                largest = max1(largest, 0.5f * luminances[(size_t)y * columns + x]);
         }
     return largest;
 }
@@ -113,7 +113,7 @@ static void fill_shares(struct environment *environment, float *luminances)
         for (uint32_t column = 0; column < columns; column++) {
             float luminance = luminances[(size_t)row * columns + column];
             mean += (double)(luminance * cell_solid_angle(environment, row)) / (4.0 * M_PI);
-            brightest = fmaxf(brightest, luminance);
+            brightest = max1(brightest, luminance);
         }
     environment->shines = mean > 0.0 && isfinite(mean);
     environment->uneven = brightest > UNEVEN * (float)mean;
@@ -210,7 +210,7 @@ float environment_density(const struct environment *environment, float3 directio
 {
     float3 d = to_environment(environment, direction);
     float u = 0.5f + atan2f(d[0], -d[2]) / (2.0f * PI);
-    float v = acosf(fminf(fmaxf(d[1], -1.0f), 1.0f)) / PI;
+    float v = acosf(min1(max1(d[1], -1.0f), 1.0f)) / PI;
     uint32_t column = (uint32_t)(clamp01(u) * (float)environment->columns);
     uint32_t row = (uint32_t)(clamp01(v) * (float)environment->rows);
     column = column < environment->columns ? column : environment->columns - 1;
@@ -230,7 +230,7 @@ static uint32_t find_within(const float *ends, uint32_t count, float u, float *o
             low = middle + 1;
     }
     float begin = low > 0 ? ends[low - 1] : 0.0f;
-    *out_within = clamp01((u - begin) / fmaxf(ends[low] - begin, 1e-30f));
+    *out_within = clamp01((u - begin) / max1(ends[low] - begin, 1e-30f));
     return low;
 }
 

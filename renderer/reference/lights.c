@@ -7,6 +7,8 @@
 #define MIN_LIGHT_DISTANCE_SQUARED 1e-6f
 // Of more lights than these, so many are picked by their power before one is chosen.
 #define MAX_CANDIDATES 64u
+// Of as few emitters a random number has bits enough to choose one and a place on it.
+#define FEW_EMITTERS 32u
 // Seen flatter than this, an emitter has no solid angle.
 #define MIN_EMITTER_COSINE 1e-6f
 
@@ -27,7 +29,8 @@ struct emitter {
     float3 normal;   // unit, of the front
     float3 radiance; // if it is the same everywhere
     bool both_sides;
-    bool is_even; // else the surface must be looked up
+    bool is_even;   // else the surface must be looked up
+    float per_area; // density of choosing a point of it, per square metre
     struct ray_crossing place;
 };
 
@@ -38,6 +41,7 @@ struct lights {
     float *power_ends; // by emitter: cumulative share of power
     uint32_t emitter_count;
     double power; // area times luminance
+    float inverse_power;
 };
 
 static void add_punctual(struct lights *lights, const struct snapshot *snapshot, uint32_t id)
@@ -47,7 +51,7 @@ static void add_punctual(struct lights *lights, const struct snapshot *snapshot,
     scene_get_light_placement(snapshot->scene, id, position, direction);
     float inner = cosf(light->inner_cone_rad), outer = cosf(light->outer_cone_rad);
     bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
-    float scale = 1.0f / fmaxf(0.001f, inner - outer);
+    float scale = 1.0f / max1(0.001f, inner - outer);
     lights->punctuals[lights->punctual_count++] = (struct punctual){
         .position = load3(position),
         .direction = load3(direction),
@@ -159,10 +163,13 @@ static bool find_emitters(struct lights *lights, const struct snapshot *snapshot
         return false;
     visit_emitters(lights, snapshot);
     double sum = 0.0;
+    lights->inverse_power = (float)(1.0 / lights->power);
     for (uint32_t i = 0; i < count; i++) {
-        const struct emitter *emitter = &lights->emitters[i];
-        sum += emitter_power(emitter, snapshot_material(snapshot, emitter->place.primitive));
+        struct emitter *emitter = &lights->emitters[i];
+        const struct material *material = snapshot_material(snapshot, emitter->place.primitive);
+        sum += emitter_power(emitter, material);
         lights->power_ends[i] = (float)(sum / lights->power);
+        emitter->per_area = material->emitted_luminance * lights->inverse_power;
     }
     lights->emitter_count = isfinite(lights->power) && lights->power > 0.0 ? count : 0;
     return true;
@@ -197,6 +204,11 @@ bool lights_have_emitters(const struct lights *lights)
     return lights->emitter_count > 0;
 }
 
+bool lights_are_few(const struct lights *lights)
+{
+    return lights->emitter_count <= FEW_EMITTERS;
+}
+
 static float spot_falloff(const struct punctual *light, float3 to_light)
 {
     if (light->type != SCENE_LIGHT_SPOT)
@@ -224,7 +236,7 @@ static bool evaluate_punctual(const struct punctual *light, float3 position,
         return false;
     out_sample->distance = sqrtf(squared);
     out_sample->direction = to_light * (1.0f / out_sample->distance);
-    float strength = 1.0f / fmaxf(squared, MIN_LIGHT_DISTANCE_SQUARED);
+    float strength = 1.0f / max1(squared, MIN_LIGHT_DISTANCE_SQUARED);
     if (light->range_m > 0.0f) {
         float ratio = squared / (light->range_m * light->range_m);
         strength *= clamp01(1.0f - ratio * ratio);
@@ -246,7 +258,7 @@ static void spread_over_sphere(const struct punctual *light, const float u[2],
     float cone = sine2 / (1.0f + sqrtf(1.0f - sine2)); // 1 - cosine without cancellation
     float brighter = 2.0f * cone / sine2;
     float lower = u[0] * cone, cosine = 1.0f - lower;
-    float sine = sqrtf(fmaxf(lower * (2.0f - lower), 0.0f)), angle = 2.0f * (float)M_PI * u[1];
+    float sine = sqrtf(max1(lower * (2.0f - lower), 0.0f)), angle = 2.0f * (float)M_PI * u[1];
     float3 x, y, middle = sample->direction;
     basis3(middle, &x, &y);
     float before = spot_falloff(light, middle);
@@ -254,8 +266,8 @@ static void spread_over_sphere(const struct punctual *light, const float u[2],
     sample->light *=
         brighter * (before > 0.0f ? spot_falloff(light, sample->direction) / before : 0.0f);
     float inside =
-        fmaxf(light->radius_m * light->radius_m - sample->distance * sample->distance * sine * sine,
-              0.0f);
+        max1(light->radius_m * light->radius_m - sample->distance * sample->distance * sine * sine,
+             0.0f);
     sample->distance = sample->distance * cosine - sqrtf(inside);
 }
 
@@ -280,7 +292,7 @@ static float choice_weight(const struct punctual *light, const struct light_samp
     if (light->radius_m > 0.0f) // part of it may shine though its middle does not
         return luminance3(sample->light);
     float cosine = dot3(normal, sample->direction);
-    return luminance3(sample->light) * (both_sides ? fabsf(cosine) : fmaxf(cosine, 0.0f));
+    return luminance3(sample->light) * (both_sides ? fabsf(cosine) : max1(cosine, 0.0f));
 }
 
 // One of the candidates that stand for many lights: evenly spaced in their cumulative power. Tells
@@ -292,7 +304,7 @@ static uint32_t pick_candidate(const struct lights *lights, uint32_t number, flo
     uint32_t id = find_share(&lights->punctuals[0].power_end,
                              sizeof(struct punctual) / sizeof(float), lights->punctual_count, u);
     float begin = id > 0 ? lights->punctuals[id - 1].power_end : 0.0f;
-    float share = fmaxf(lights->punctuals[id].power_end - begin, 1e-30f);
+    float share = max1(lights->punctuals[id].power_end - begin, 1e-30f);
     *out_scale = 1.0f / (share * (float)MAX_CANDIDATES);
     return id;
 }
@@ -344,8 +356,7 @@ float lights_emitter_density(const struct lights *lights, const struct surface *
     float cosine = -dot3(emitter->geometric_normal, to_emitter) / sqrtf(squared);
     if (!(cosine > MIN_EMITTER_COSINE))
         return 0.0f;
-    float per_area = (float)((double)emitter->material->emitted_luminance / lights->power);
-    return per_area * squared / cosine;
+    return emitter->material->emitted_luminance * lights->inverse_power * squared / cosine;
 }
 
 bool lights_sample_emitter(const struct lights *lights, const struct snapshot *snapshot,
@@ -354,22 +365,26 @@ bool lights_sample_emitter(const struct lights *lights, const struct snapshot *s
 {
     uint32_t id = find_share(lights->power_ends, 1, lights->emitter_count, choice);
     const struct emitter *emitter = &lights->emitters[id];
-    float root = sqrtf(u[0]), b = root * (1.0f - u[1]), c = root * u[1];
+    float first = u[0];
+    if (lights_are_few(lights)) {
+        float begin = id > 0 ? lights->power_ends[id - 1] : 0.0f;
+        first = clamp01((choice - begin) / (lights->power_ends[id] - begin));
+    }
+    float root = sqrtf(first), b = root * (1.0f - u[1]), c = root * u[1];
     float3 to_emitter = emitter->corner + emitter->edges[0] * b + emitter->edges[1] * c - position;
-    float squared = dot3(to_emitter, to_emitter), distance = sqrtf(squared);
-    float3 direction = to_emitter * (1.0f / distance);
+    float squared = dot3(to_emitter, to_emitter), nearness = 1.0f / sqrtf(squared);
+    float3 direction = to_emitter * nearness;
     float cosine = -dot3(emitter->normal, direction);
     if (emitter->both_sides)
         cosine = fabsf(cosine);
     if (!(cosine > MIN_EMITTER_COSINE))
         return false;
-    const struct material *material = snapshot_material(snapshot, emitter->place.primitive);
     *out_sample = (struct light_sample){
         .direction = direction,
-        .distance = distance,
+        .distance = squared * nearness,
         .light = emitter->radiance,
         .lift = dot3(emitter->normal, direction) > 0.0f ? -emitter->normal : emitter->normal,
-        .density = (float)((double)material->emitted_luminance / lights->power) * squared / cosine,
+        .density = emitter->per_area * squared / cosine,
         .casts_shadow = true,
     };
     if (emitter->is_even)

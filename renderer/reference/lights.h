@@ -36,6 +36,10 @@ bool lights_sample_emitter(const struct lights *lights, const struct snapshot *s
                            float3 position, float choice, const float u[2],
                            struct light_sample *out_sample);
 
+// Whether emitters are so few that `choice` may be the first of the point's two random numbers: it
+// is spread anew within the emitter's share then.
+bool lights_are_few(const struct lights *lights);
+
 // Density per steradian of lights_sample_emitter() choosing the direction to a point of an emitter.
 float lights_emitter_density(const struct lights *lights, const struct surface *emitter,
                              float3 from);

@@ -20,6 +20,14 @@
 // Paths end by chance from here on, by how much light they still carry.
 #define ROULETTE_FROM_VERTEX  3u
 #define ROULETTE_MAX_SURVIVAL 0.95f
+// Caustics of points: chance alone would never find a point by way of a mirror or a lens. So where
+// a path has spread before, lobes towards points are at least this wide, less with each further
+// sample of the pixel: the picture converges to the right one (Kaplanyan and Dachsbacher 2013,
+// "Path Space Regularization for Holistic and Robust Light Transport").
+#define CAUSTIC_ALPHA 0.2f
+#define CAUSTIC_POWER (-1.0f / 6.0f)
+// Per steradian; directions chosen by less spread a path.
+#define SPREAD_DENSITY 10.0f
 // What lets less than this through is opaque.
 #define MIN_TRANSMITTANCE 1e-6f
 
@@ -47,9 +55,11 @@ struct path {
     float3 origin;
     float3 direction; // unit
     float3 throughput;
-    float3 from;          // the vertex that the ray left
-    float density;        // of `direction`, per steradian
-    bool scattered;       // there is such a vertex
+    float3 from;    // the vertex that the ray left
+    float density;  // of `direction`, per steradian
+    bool scattered; // there is such a vertex
+    bool spread;    // and some was no mirror nor lens
+    float caustic_alpha;
     uint32_t vertex;      // number of scattering events so far
     uint32_t reflections; // among them
     const struct material *media[MAX_MEDIA];
@@ -75,6 +85,7 @@ void path_setup_init(struct path_setup *setup, const struct reference_params *pa
         .aims_at_environment =
             by_light && shines && (by_light_alone || environment_is_uneven(snapshot->environment)),
         .finds_light = !by_light_alone,
+        .has_points = lights_have_punctual(snapshot->lights),
         .rays_find = !by_light_alone && (emits || shines),
     };
     for (int axis = 0; axis < 3; axis++)
@@ -125,7 +136,7 @@ static void add_light(struct path *path, float3 radiance, uint32_t reflections,
 
 static float offset_at(const struct path *path, float3 position)
 {
-    float largest = fmaxf(fabsf(position[0]), fmaxf(fabsf(position[1]), fabsf(position[2])));
+    float largest = max1(fabsf(position[0]), max1(fabsf(position[1]), fabsf(position[2])));
     return OFFSET_OF_PLACE * largest + OFFSET_OF_DIAGONAL * path->setup->snapshot->diagonal_m;
 }
 
@@ -277,13 +288,20 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
     if (lights_have_punctual(snapshot->lights)) {
         get_2d(path, USE_LAMP, choice);
         get_2d(path, USE_LAMP_POINT, u);
+        struct bsdf wide;
+        const struct bsdf *lobes = bsdf;
+        if (path->spread && bsdf->alpha < path->caustic_alpha) {
+            wide = *bsdf;
+            bsdf_widen(&wide, path->caustic_alpha);
+            lobes = &wide;
+        }
         if (lights_sample_punctual(snapshot->lights, surface->position, surface->normal,
                                    bsdf->p_transmit > 0.0f, choice, u, &sample))
-            scatter_light(path, surface, bsdf, &sample, false);
+            scatter_light(path, surface, lobes, &sample, false);
     }
     if (setup->aims_at_emitters) {
-        choice[0] = get_1d(path, USE_EMITTER);
         get_2d(path, USE_EMITTER_POINT, u);
+        choice[0] = lights_are_few(snapshot->lights) ? u[0] : get_1d(path, USE_EMITTER);
         if (lights_sample_emitter(snapshot->lights, snapshot, surface->position, choice[0], u,
                                   &sample) &&
             sample.distance > 2.0f * offset_at(path, surface->position))
@@ -338,12 +356,14 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
     float u[2];
     struct scattering scattering;
     get_2d(path, USE_DIRECTION, u);
-    if (!bsdf_sample(bsdf, get_1d(path, USE_LOBE), u, &path->direction, &scattering))
+    float lobe = bsdf->p_diffuse < 1.0f ? get_1d(path, USE_LOBE) : 0.0f;
+    if (!bsdf_sample(bsdf, lobe, u, &path->direction, &scattering))
         return false;
     path->throughput *= scattering.share * (1.0f / scattering.density);
     path->density = scattering.density;
     path->from = surface->position;
     path->scattered = true;
+    path->spread = path->spread || scattering.density < SPREAD_DENSITY;
     bool reflected = dot3(path->direction, surface->geometric_normal) > 0.0f;
     path->origin = step_off(path, surface, reflected ? 1.0f : -1.0f);
     if (reflected)
@@ -353,7 +373,7 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
     float largest = max3(path->throughput);
     bool survives = largest > 0.0f;
     if (survives && path->vertex >= ROULETTE_FROM_VERTEX) {
-        float survival = fminf(sqrtf(largest), ROULETTE_MAX_SURVIVAL);
+        float survival = min1(sqrtf(largest), ROULETTE_MAX_SURVIVAL);
         survives = get_1d(path, USE_ROULETTE) < survival;
         path->throughput *= 1.0f / survival;
     }
@@ -418,11 +438,14 @@ static void follow(struct path *path)
 void path_add_sample(const struct path_setup *setup, struct path_rays *rays, uint32_t x, uint32_t y,
                      uint32_t sample, float3 *layers)
 {
-    struct path path = {.setup = setup,
-                        .rays = rays,
-                        .layers = layers,
-                        .throughput = splat3(1.0f),
-                        .origin = setup->eye};
+    struct path path = {
+        .setup = setup,
+        .rays = rays,
+        .layers = layers,
+        .throughput = splat3(1.0f),
+        .origin = setup->eye,
+        .caustic_alpha =
+            setup->has_points ? CAUSTIC_ALPHA * powf((float)(sample + 1), CAUSTIC_POWER) : 0.0f};
     // Even and odd samples are sequences of their own, whose difference tells the noise.
     sampler_init(&path.sampler, setup->seed, y * setup->width + x, sample & 1u, sample >> 1);
     float at[2] = {0.5f, 0.5f}, ray[3];

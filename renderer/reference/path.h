@@ -9,8 +9,9 @@
 // other rays stop there and find black, since what casts a shadow in the renderer blocks light from
 // both sides, and a side that is never shown has no colour. Blended surfaces and thin walls let
 // light pass straight through in proportion, from both sides likewise. Bodies (transmission and a
-// thickness) refract at both of their sides, tint where light enters, and absorb on the way; what
-// they hide from a punctual light is lit through them by chance alone, as a caustic is.
+// thickness) refract at both of their sides, tint where light enters, and absorb on the way; they
+// cast shadows, which light that they refract brightens. Caustics of punctual lights are blurred at
+// first and sharpen with the number of samples.
 #ifndef VOXCAST_RENDERER_REFERENCE_PATH_H
 #define VOXCAST_RENDERER_REFERENCE_PATH_H
 
@@ -30,6 +31,7 @@ struct path_setup {
     bool pixel_center;
     bool aims_at_emitters, aims_at_environment;
     bool finds_light; // rays that follow the surface count, too
+    bool has_points;  // there are punctual lights
     bool rays_find;   // and there is light that they could find
 };
 

@@ -31,8 +31,9 @@ struct reference {
     // Of each pixel: sums of each layer (3 floats), and of the luminance of odd samples.
     uint32_t pixel_floats;
     float *sums;
-    pthread_mutex_t mutex; // of all below, and of `sums`
-    pthread_cond_t changed;
+    pthread_mutex_t mutex;  // of all below, and of `sums`
+    pthread_cond_t work;    // there is more for workers
+    pthread_cond_t changed; // the target is reached, or work has stopped
     struct tile *tiles;
     uint32_t target;    // samples per pixel that are wanted
     uint32_t level;     // that tiles are brought to at present
@@ -172,12 +173,12 @@ static void give_tile_back(struct reference *reference, struct work *work, bool 
         // Cancelled, or taken for a lower level: somebody is to look at it again.
         if (work->tile < reference->next_tile)
             reference->next_tile = work->tile;
-        pthread_cond_broadcast(&reference->changed);
+        pthread_cond_broadcast(&reference->work);
     } else if (was_behind && --reference->behind == 0) {
         advance_level(reference);
-        pthread_cond_broadcast(&reference->changed);
+        pthread_cond_broadcast(reference->behind > 0 ? &reference->work : &reference->changed);
     }
-    if (reference->busy_count == 0)
+    if (reference->busy_count == 0 && atomic_load(&reference->cancelled))
         pthread_cond_broadcast(&reference->changed);
 }
 
@@ -190,7 +191,7 @@ static void *worker(void *context)
     pthread_mutex_lock(&reference->mutex);
     while (!reference->quits && work) {
         if (!take_tile(reference, work)) {
-            pthread_cond_wait(&reference->changed, &reference->mutex);
+            pthread_cond_wait(&reference->work, &reference->mutex);
             continue;
         }
         pthread_mutex_unlock(&reference->mutex);
@@ -224,6 +225,7 @@ static void init_locks(struct reference *reference)
     pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
     pthread_mutex_init(&reference->mutex, NULL);
     pthread_cond_init(&reference->changed, &attributes);
+    pthread_cond_init(&reference->work, NULL);
     pthread_condattr_destroy(&attributes);
 }
 
@@ -265,12 +267,13 @@ void reference_destroy(struct reference **reference_slot)
     atomic_store(&reference->cancelled, true);
     pthread_mutex_lock(&reference->mutex);
     reference->quits = true;
-    pthread_cond_broadcast(&reference->changed);
+    pthread_cond_broadcast(&reference->work);
     pthread_mutex_unlock(&reference->mutex);
     for (uint32_t i = 0; i < reference->thread_count; i++)
         pthread_join(reference->threads[i], NULL);
     pthread_mutex_destroy(&reference->mutex);
     pthread_cond_destroy(&reference->changed);
+    pthread_cond_destroy(&reference->work);
     snapshot_release(&reference->scene);
     free(reference->sums);
     free(reference->tiles);
@@ -295,7 +298,7 @@ void reference_start(struct reference *reference, uint32_t samples)
     uint32_t least = least_samples(reference);
     reference->level = least < reference->target ? least : reference->target;
     advance_level(reference);
-    pthread_cond_broadcast(&reference->changed);
+    pthread_cond_broadcast(&reference->work);
     pthread_mutex_unlock(&reference->mutex);
 }
 

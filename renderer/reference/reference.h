@@ -1,5 +1,6 @@
-// Ground truth: a progressive, unbiased path tracer on the CPU, with the scene, materials, lights,
-// units and camera of the real-time path. See path.h for what it holds light to do.
+// Ground truth: a progressive path tracer on the CPU, with the scene, materials, lights, units and
+// camera of the real-time path: unbiased, but for caustics of points, where it is consistent (their
+// blur shrinks with the samples). See path.h for what it holds light to do.
 //
 // A reference owns worker threads, which add samples to its picture while somebody wants them. The
 // same seed gives the same picture, bit by bit, whatever the number of threads and however often

@@ -23,17 +23,22 @@ static float3 load_lanes(const float *values)
      load_lanes((corners)->vertices[1]->field) * (corners)->weights[1] +                           \
      load_lanes((corners)->vertices[2]->field) * (corners)->weights[2])
 
-// Also for vectors whose squared length floats cannot hold. False if there is no length at all.
-static bool normalize_any(float3 *vector)
+// For vectors whose squared length floats cannot hold. False if there is no length at all.
+static __attribute__((noinline)) bool normalize_extreme(float3 *vector)
+{
+    float largest = max1(fabsf((*vector)[0]), max1(fabsf((*vector)[1]), fabsf((*vector)[2])));
+    if (!(largest > 0.0f) || !isfinite(largest))
+        return false;
+    *vector *= 1.0f / max1(largest, 1e-38f);
+    *vector *= 1.0f / sqrtf(dot3(*vector, *vector));
+    return true;
+}
+
+static inline bool normalize_any(float3 *vector)
 {
     float squared = dot3(*vector, *vector);
-    if (!(squared > 1e-30f && squared < 1e30f)) {
-        float largest = fmaxf(fabsf((*vector)[0]), fmaxf(fabsf((*vector)[1]), fabsf((*vector)[2])));
-        if (!(largest > 0.0f) || !isfinite(largest))
-            return false;
-        *vector *= 1.0f / fmaxf(largest, 1e-38f);
-        squared = dot3(*vector, *vector);
-    }
+    if (!(squared > 1e-30f && squared < 1e30f))
+        return normalize_extreme(vector);
     *vector *= 1.0f / sqrtf(squared);
     return true;
 }
@@ -91,10 +96,8 @@ static void fill_material(struct surface *surface, const struct corners *corners
     surface->coverage = material->blends ? clamp01(base[3]) : 1.0f;
     surface->transmission = transmission * (1.0f - surface->metallic);
     surface->f90 = material->f90 * weight;
-    for (int c = 0; c < 3; c++) {
-        surface->base_color[c] = clamp01(base[c]);
-        surface->f0[c] = fminf(material->f0 * specular_color[c], 1.0f) * weight;
-    }
+    surface->base_color = clamp013(base);
+    surface->f0 = smaller3(specular_color * material->f0, splat3(1.0f)) * weight;
     if (material->unlit)
         surface->emission = surface->base_color;
     if (surface->is_back)

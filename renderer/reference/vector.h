@@ -4,6 +4,7 @@
 #define VOXCAST_RENDERER_REFERENCE_VECTOR_H
 
 #include <math.h>
+#include <stdint.h>
 
 typedef float float3 __attribute__((vector_size(16)));
 
@@ -52,9 +53,36 @@ static inline float3 normalize3(float3 a)
     return squared > 0.0f ? a * (1.0f / sqrtf(squared)) : a;
 }
 
+// Of numbers: where one is none, either may result. One instruction each, unlike fmaxf().
+static inline float max1(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static inline float min1(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+typedef int32_t mask3 __attribute__((vector_size(16)));
+
+// By lanes.
+static inline float3 smaller3(float3 a, float3 b)
+{
+    mask3 mask = a < b;
+    return (float3)(((mask3)a & mask) | ((mask3)b & ~mask));
+}
+
+static inline float3 larger3(float3 a, float3 b)
+{
+    mask3 mask = a > b;
+    return (float3)(((mask3)a & mask) | ((mask3)b & ~mask));
+}
+
+// The largest of the three.
 static inline float max3(float3 a)
 {
-    return fmaxf(a[0], fmaxf(a[1], a[2]));
+    return max1(a[0], max1(a[1], a[2]));
 }
 
 // Rec.709.
@@ -65,7 +93,12 @@ static inline float luminance3(float3 rgb)
 
 static inline float clamp01(float a)
 {
-    return fminf(fmaxf(a, 0.0f), 1.0f);
+    return min1(max1(a, 0.0f), 1.0f);
+}
+
+static inline float3 clamp013(float3 a)
+{
+    return smaller3(larger3(a, (float3){0}), (float3){1.0f, 1.0f, 1.0f, 1.0f});
 }
 
 // Two axes perpendicular to a unit normal and to each other (Duff et al. 2017, "Building an

@@ -357,22 +357,27 @@ static void fill_normal(const struct scene_node *node, const struct RTCHit *hit,
     }
 }
 
-static struct RTCRay embree_ray(const struct ray *ray)
+// Field by field in place: a copy of what has just been written in parts would wait for the parts.
+static void fill_ray(struct RTCRay *target, const struct ray *ray)
 {
-    return (struct RTCRay){.org_x = ray->origin[0],
-                           .org_y = ray->origin[1],
-                           .org_z = ray->origin[2],
-                           .dir_x = ray->direction[0],
-                           .dir_y = ray->direction[1],
-                           .dir_z = ray->direction[2],
-                           .tfar = ray->max_distance,
-                           .mask = UINT32_MAX};
+    target->org_x = ray->origin[0];
+    target->org_y = ray->origin[1];
+    target->org_z = ray->origin[2];
+    target->tnear = 0.0f;
+    target->dir_x = ray->direction[0];
+    target->dir_y = ray->direction[1];
+    target->dir_z = ray->direction[2];
+    target->time = 0.0f;
+    target->tfar = ray->max_distance;
+    target->mask = UINT32_MAX;
+    target->id = 0;
+    target->flags = 0;
 }
 
 static bool find_nearest(const struct ray_scene *ray_scene, const struct ray *ray,
                          struct RTCRayHit *out_query)
 {
-    out_query->ray = embree_ray(ray);
+    fill_ray(&out_query->ray, ray);
     out_query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
     out_query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     struct RTCIntersectContext context;
@@ -395,7 +400,8 @@ bool ray_scene_find(const struct ray_scene *ray_scene, const struct ray *ray,
 bool ray_scene_is_occluded(const struct ray_scene *ray_scene, const struct ray *ray,
                            ray_scene_stops_light *stops_light, void *context)
 {
-    struct RTCRay query = embree_ray(ray);
+    struct RTCRay query;
+    fill_ray(&query, ray);
     struct light_context light = {
         .ray_scene = ray_scene, .stops_light = stops_light, .context = context};
     rtcInitIntersectContext(&light.embree);
@@ -411,7 +417,7 @@ uint64_t ray_scene_cast_all(const struct ray_scene *ray_scene, const struct ray_
     rtcInitIntersectContext(&light.embree);
     for (uint64_t i = 0; i < count; i++) {
         struct RTCRayHit query;
-        query.ray = embree_ray(&rays[i].ray);
+        fill_ray(&query.ray, &rays[i].ray);
         if (rays[i].is_shadow) {
             rtcOccluded1(ray_scene->top, &light.embree, &query.ray);
             hits += query.ray.tfar < 0.0f;

@@ -303,6 +303,33 @@ static void test_blinn_phong(void **state)
     scene_destroy(&scene);
 }
 
+// A mirror throws a point's light onto a floor as if there were a second point behind it: light
+// that chance would hardly ever find. The more samples, the less it is blurred.
+static void test_caustic_of_a_point(void **state)
+{
+    (void)state;
+    struct scene *scene = support_scene_create();
+    uint32_t floor = support_add_matte(scene, 0.6f);
+    support_add_floor(scene, floor, (float[2]){-0.01f, -0.01f}, (float[2]){0.01f, 0.01f}, 0.0f,
+                      false);
+    struct scene_material metal;
+    scene_material_init(&metal, "mirror");
+    metal.roughness = 0.0f;
+    uint32_t mirror = scene_add_material(scene, &metal);
+    const float wall[4][3] = {{1, -9, -9}, {1, -9, 9}, {1, 9, 9}, {1, 9, -9}};
+    support_add_quad(scene, mirror, wall);
+    struct scene_light light;
+    scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
+    light.intensity = 20.0f;
+    scene_add_light(scene, &light, (float[3]){0, 0, 1}, (float[3]){0, 0, -1});
+    struct reference_params params =
+        support_narrow_view((float[3]){-0.5f, 0, 1}, (float[3]){0, 0, 0});
+    uint32_t layer = REFERENCE_LAYER(REFERENCE_FIRST_BOUNCE);
+    support_assert_ratio(mean_red(scene, &params, 2048, layer), 0.6 / M_PI * 20.0 / 5.0 / sqrt(5.0),
+                         0.02, "mirrored point");
+    scene_destroy(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -315,6 +342,7 @@ int main(void)
         cmocka_unit_test(test_coverage),
         cmocka_unit_test(test_lamps_of_a_size),
         cmocka_unit_test(test_blinn_phong),
+        cmocka_unit_test(test_caustic_of_a_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
