@@ -20,6 +20,7 @@ int cli_render(int argc, char **argv);
 int cli_info(int argc, char **argv);
 int cli_bench(int argc, char **argv);
 int cli_compare(int argc, char **argv);
+int cli_accuracy(int argc, char **argv);
 
 // Prints one line to stderr and returns `status`.
 int cli_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -12,6 +12,7 @@ struct bench_run {
     const struct scene *scene;
     struct frame_params params;   // its camera is where the swaying begins
     uint32_t frames;              // measured
+    double enough_ms;             // measured for so long, no more frames are; 0: all of them are
     uint32_t warm_up_frames;      // of the swaying camera, not measured
     uint32_t max_converge_frames; // drawn before, at the start, until nothing changes; 0 for none
 };

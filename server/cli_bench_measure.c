@@ -67,8 +67,11 @@ bool bench_measure(const struct bench_run *run, struct bench_result *out_result,
     if (!view)
         return error_set(out_error, "out of memory");
     bool done = converge(run, view, out_result, out_error);
-    for (uint32_t i = 0; i < run->frames + run->warm_up_frames && done; i++)
+    double left_ms = run->enough_ms > 0.0 ? run->enough_ms : INFINITY;
+    for (uint32_t i = 0; i < run->frames + run->warm_up_frames && done && left_ms > 0.0; i++) {
         done = measure_frame(run, view, i, out_result, out_error);
+        left_ms -= i < run->warm_up_frames ? 0.0 : out_result->statistics.frame_time_ms;
+    }
     renderer_view_destroy(run->renderer, &view);
     return done;
 }

@@ -15,6 +15,8 @@ static const char usage[] =
     "                            voxcast bench --help\n"
     "  compare A.pfm B.pfm       tell how far a picture is from the truth; see\n"
     "                            voxcast compare --help\n"
+    "  accuracy SCENE --out DIR  error against time for every setting; see\n"
+    "                            voxcast accuracy --help\n"
     "  --version                 print the version\n";
 
 int main(int argc, char **argv)
@@ -32,11 +34,15 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         int (*run)(int argc, char **argv);
-    } commands[] = {
-        {"render", cli_render}, {"info", cli_info}, {"bench", cli_bench}, {"compare", cli_compare}};
+    } commands[] = {{"render", cli_render},
+                    {"info", cli_info},
+                    {"bench", cli_bench},
+                    {"compare", cli_compare},
+                    {"accuracy", cli_accuracy}};
     for (size_t i = 0; i < sizeof(commands) / sizeof(commands[0]); i++)
         if (strcmp(argv[1], commands[i].name) == 0)
             return commands[i].run(argc - 1, argv + 1);
     return cli_fail(CLI_EXIT_USAGE,
-                    "unknown command \"%s\"; known are render, info, bench and compare", argv[1]);
+                    "unknown command \"%s\"; known are render, info, bench, compare and accuracy",
+                    argv[1]);
 }

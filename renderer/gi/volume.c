@@ -58,7 +58,7 @@ static bool create_pools(struct voxel_volume *volume)
     volume->surfels = make(volume, "gi.surfels", surfels * SURFEL_WORDS);
     volume->face_capacity = face_capacity(volume);
     volume->faces = make(volume, "gi.faces", (size_t)volume->face_capacity * face_words(volume));
-    volume->free_list = make(volume, "gi.free", cells + 2 * surfels + VOXEL_FACES * cells);
+    volume->free_list = make(volume, "gi.free", cells + 2 * surfels + volume->face_capacity);
     volume->lists = make(volume, "gi.lists", volume->list_words);
     volume->queue = make(volume, "gi.queue", cells * CACHE_CLASSES);
     return volume->cells && volume->surfels && volume->faces && volume->free_list &&
@@ -68,9 +68,11 @@ static bool create_pools(struct voxel_volume *volume)
 static struct gpu_texture *create_texture(const struct voxel_volume *volume)
 {
     uint32_t outer = volume->params.edge + 2;
-    uint32_t height = outer * volume->lit_levels + outer / 2 + 1;
+    uint32_t height = outer * volume->lit_levels;
     // Mip levels lie side by side: halves, quarters and so on down to 8 voxels, with their borders,
     // are together no wider than the finest level.
+    if (volume->level_count > volume->lit_levels)
+        height += outer / 2 + 1;
     uint32_t width = volume->face_count * outer;
     return gpu_texture_create(volume->gpu, &(struct gpu_texture_params){
                                                .label = "gi.radiance",
@@ -186,8 +188,8 @@ static bool lay_out(struct voxel_volume *volume, const struct resident *resident
     uint32_t edge = volume->params.edge;
     uint32_t lit_levels = clipmap ? choose_levels(volume, resident, extent) : 1;
     bool same = volume->radiance && lit_levels == volume->lit_levels;
-    // Mips down to 8^3: no cone sees the scene more coarsely.
-    uint32_t levels = lit_levels + log2_of(edge) - 3;
+    // A single level has mips down to 8^3; several are each other's.
+    uint32_t levels = lit_levels > 1 ? lit_levels : 1 + log2_of(edge) - 3;
     volume->level_count = levels;
     volume->lit_levels = lit_levels;
     uint32_t doublings = lit_levels - 1;
@@ -344,6 +346,16 @@ static bool remember_all_instances(struct voxel_volume *volume, const struct res
     return volume->instances != NULL;
 }
 
+static struct gpu_buffer *enlarge(struct voxel_volume *volume, struct gpu_buffer **old,
+                                  const char *label, size_t words, size_t words_used)
+{
+    struct gpu_buffer *larger = make(volume, label, words);
+    if (larger)
+        gpu_buffer_copy(larger, 0, *old, 0, words_used * 4);
+    gpu_buffer_destroy(old);
+    return larger;
+}
+
 // A cell has up to six faces, most have fewer than two. Once light has settled, those that have
 // records keep them and lighting makes the missing ones; before, all start over, so that the result
 // does not depend on what had been traced.
@@ -359,18 +371,18 @@ static bool make_room_for_faces(struct voxel_volume *volume)
         return create_pools(volume);
     }
     uint32_t used = volume->face_capacity;
-    struct gpu_buffer *old = volume->faces;
+    size_t others = volume->cell_capacity + 2 * (size_t)volume->surfel_capacity;
     volume->face_capacity = face_capacity(volume);
-    volume->faces = make(volume, "gi.faces", (size_t)volume->face_capacity * face_words(volume));
-    if (volume->faces) {
-        gpu_buffer_copy(volume->faces, 0, old, 0, (size_t)used * face_words(volume) * 4);
-        gpu_buffer_fill(volume->counters, COUNTER_FACES * 4, 4, used);
-        gpu_buffer_fill(volume->counters, COUNTER_OVERFLOW * 4, 4, 0);
-    }
-    gpu_buffer_destroy(&old);
+    volume->faces = enlarge(volume, &volume->faces, "gi.faces",
+                            (size_t)volume->face_capacity * face_words(volume),
+                            (size_t)used * face_words(volume));
+    volume->free_list = enlarge(volume, &volume->free_list, "gi.free",
+                                others + volume->face_capacity, others + used);
+    gpu_buffer_fill(volume->counters, COUNTER_FACES * 4, 4, used);
+    gpu_buffer_fill(volume->counters, COUNTER_OVERFLOW * 4, 4, 0);
     volume->light.relight = true;
     volume->light.relight_direct = true;
-    return volume->faces != NULL;
+    return volume->faces && volume->free_list;
 }
 
 bool voxel_volume_update(struct voxel_volume *volume, const struct resident *resident,
@@ -481,9 +493,9 @@ void voxel_volume_bind(struct voxel_volume *volume)
     memcpy(block->shape,
            (uvec4){volume->lit_levels, face_words(volume), volume->face_capacity, volume->epoch},
            sizeof(uvec4));
-    // No cone blurs over more than two voxels of the coarsest level: wider ones take what is before
-    // an opening, or behind a corner, for part of it.
-    block->light[3] = 2.0f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
+    // No cone blurs over more than a voxel of the coarsest level: wider ones take what is before an
+    // opening or behind a corner for part of it, and see both sides of thin slanted walls.
+    block->light[3] = (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
     block->options[0] = volume->cell_capacity;
     block->options[3] = volume->instance_count;
     fill_levels(volume, block);

@@ -116,6 +116,18 @@ void display_picture(const struct display_params *params, const struct picture *
         display_pixel(params, radiance->rgb + 3 * i, out_picture->rgb + 3 * i);
 }
 
+void display_bytes(const struct display_params *params, const struct picture *radiance,
+                   uint8_t *out_rgb)
+{
+    size_t count = picture_pixel_count(radiance);
+    for (size_t i = 0; i < count; i++) {
+        float display[3];
+        display_pixel(params, radiance->rgb + 3 * i, display);
+        for (size_t c = 0; c < 3; c++)
+            out_rgb[3 * i + c] = (uint8_t)(255.0f * display[c] + 0.5f);
+    }
+}
+
 float display_linear_from_srgb(float value)
 {
     return value <= 0.04045f ? value / 12.92f : powf((value + 0.055f) / 1.055f, 2.4f);

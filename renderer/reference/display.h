@@ -24,6 +24,10 @@ void display_pixel(const struct display_params *params, const float radiance[3],
 void display_picture(const struct display_params *params, const struct picture *radiance,
                      struct picture *out_picture);
 
+// A whole picture to 3 bytes a pixel.
+void display_bytes(const struct display_params *params, const struct picture *radiance,
+                   uint8_t *out_rgb);
+
 // The sRGB curve backwards: display values 0..1 to linear 0..1.
 float display_linear_from_srgb(float value);
 

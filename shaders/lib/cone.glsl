@@ -27,10 +27,16 @@ struct cone_light {
     float occlusion;     // of 1, near hits counting more: for ambient occlusion
     float hit_m;         // distance of the step that took up most, and the diameter read there
     float hit_diameter_m;
+    float hit_density; // optical depth per metre there
 };
 
 const uint CONE_MAX_STEPS = 256u;
 const float CONE_OPAQUE = 0.004;
+// Filtering spreads surfaces outwards, so that bodies seem larger and openings smaller: each face is
+// read so many voxels nearer to its body. More than this would turn thin walls inside out.
+const float FACE_INSET = 0.25;
+// Of steps, over the widest diameter: filtering spreads a voxel over two.
+const float WIDEST_STEP = 1.5;
 
 vec3 voxel_position(vec3 world)
 {
@@ -38,13 +44,23 @@ vec3 voxel_position(vec3 world)
 }
 
 // How far inside a level a place is, in its voxels; negative outside what filtering can reach. Where
-// addresses wrap, the outermost half voxel would be filtered with the other side.
+// addresses wrap, the outermost half voxel would be filtered with the other side, and faces are read
+// a little aside.
 float inside_level(uint level, vec3 position)
 {
     ivec4 origin = voxels.levels[level].origin;
     vec3 at = position * voxels.levels[level].size.y - vec3(origin.xyz);
     vec3 rim = min(at, float(origin.w) - at);
-    return min(rim.x, min(rim.y, rim.z)) - 0.5 * float(voxels.levels[level].index.z);
+    return min(rim.x, min(rim.y, rim.z)) - (0.5 + FACE_INSET) * float(voxels.levels[level].index.z);
+}
+
+// Edge in m of the finest voxels that hold a place; those of the coarsest level beyond them all.
+float finest_voxel(vec3 position)
+{
+    float edge = voxels.levels[0].size.x;
+    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, position) < 0.0; level++)
+        edge = voxels.levels[level + 1u].size.x;
+    return edge;
 }
 
 // Filtered light and optical depth across a voxel of a level, for a ray of the given direction.
@@ -65,9 +81,10 @@ vec4 sample_level(uint level, vec3 position, vec3 direction)
     float x = direction.x > 0.0 ? face : 0.0;
     float y = direction.y > 0.0 ? 3.0 * face : 2.0 * face;
     float z = direction.z > 0.0 ? 5.0 * face : 4.0 * face;
-    return size.x * textureLod(voxel_radiance, vec3(uvw.x + x, uvw.yz), 0.0) +
-           size.y * textureLod(voxel_radiance, vec3(uvw.x + y, uvw.yz), 0.0) +
-           size.z * textureLod(voxel_radiance, vec3(uvw.x + z, uvw.yz), 0.0);
+    vec3 inset = uvw - FACE_INSET * sign(direction) * scale;
+    return size.x * textureLod(voxel_radiance, vec3(inset.x + x, uvw.yz), 0.0) +
+           size.y * textureLod(voxel_radiance, vec3(uvw.x + y, inset.y, uvw.z), 0.0) +
+           size.z * textureLod(voxel_radiance, vec3(uvw.x + z, uvw.y, inset.z), 0.0);
 #endif
 }
 
@@ -123,6 +140,7 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     result.occlusion = 0.0;
     result.hit_m = 0.0;
     result.hit_diameter_m = voxels.levels[0].size.x;
+    result.hit_density = 0.0;
     float passed = 1.0;
     float most = 0.0;
     float t = 0.0;
@@ -130,11 +148,11 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     for (uint i = 0u; i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE; i++) {
         // Close to its start a cone is thinner than a voxel: no step is longer than one there.
         float length_m = max(min(c.step, 1.0) * voxel, c.step * 2.0 * c.tangent * t);
-        length_m = min(length_m, max(c.widest, voxel));
+        length_m = min(length_m, max(WIDEST_STEP * c.widest, voxel));
         float middle = t + 0.5 * length_m;
         uint level;
-        // Never narrower than the step, so that nothing falls between two samples.
-        float diameter = max(min(2.0 * c.tangent * middle, c.widest), length_m);
+        // Hardly narrower than the step, so that nothing falls between two samples.
+        float diameter = min(max(2.0 * c.tangent * middle, length_m), max(c.widest, voxel));
         vec4 value = sample_voxels(c.origin + middle * c.direction, c.direction, diameter, level);
         if (level >= voxels.counts.x)
             break;
@@ -150,6 +168,7 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
             most = absorbed;
             result.hit_m = middle;
             result.hit_diameter_m = diameter;
+            result.hit_density = value.a;
         }
         passed -= absorbed;
         t += length_m;

@@ -39,9 +39,7 @@ gather_cones begin_gather(vec3 position, vec3 normal, vec2 turn)
     gather_cones g;
     mat3 axes = frame_about(normal);
     g.axes = mat3(axes[0] * turn.x + axes[1] * turn.y, axes[1] * turn.x - axes[0] * turn.y, normal);
-    float voxel = voxels.levels[0].size.x;
-    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, position) < 0.0; level++)
-        voxel = voxels.levels[level + 1u].size.x;
+    float voxel = finest_voxel(position);
     g.c.origin = position + normal * (MARCH_OF_SET.y * voxel);
     g.c.tangent = MARCH_OF_SET.w;
     g.c.step = MARCH_OF_SET.x;
@@ -57,6 +55,25 @@ vec3 escaped_light(vec3 direction, float transmittance)
 }
 #endif
 
+// Filtering reaches through a wall one voxel thick: where most of it is met, its far side is mixed in,
+// which slanted walls show to the ray too. So light is read where the wall begins: as far in front
+// of the hit as there is still some of it.
+const float FRONT_DIAMETERS[2] = float[](0.75, 0.4);
+const float FRONT_DENSITY = 0.05;
+
+float front_of_hit(cone c, cone_light found)
+{
+    for (int i = 0; i < 2; i++) {
+        float at_m = max(found.hit_m - FRONT_DIAMETERS[i] * found.hit_diameter_m, 0.0);
+        uint level;
+        vec4 value = sample_voxels(c.origin + at_m * c.direction, c.direction, found.hit_diameter_m,
+                                   level);
+        if (value.a > FRONT_DENSITY * found.hit_density)
+            return at_m;
+    }
+    return found.hit_m;
+}
+
 // Traces cone `i` and adds its share; `out_hit` remembers what counts most in it: distance in voxels
 // of the finest level (half), transmittance (8 bits), log2 of the diameter in those voxels (8 bits,
 // in sixteenths).
@@ -71,6 +88,7 @@ void add_cone(gather_cones g, uint i, inout gathered sum, out uint out_hit)
 #endif
     sum.light += local.w * light;
     sum.openness += local.w * (1.0 - found.occlusion);
+    found.hit_m = front_of_hit(g.c, found);
     float inverse = voxels.levels[0].size.y;
     float diameter = clamp(log2(found.hit_diameter_m * inverse) * 16.0, 0.0, 255.0);
     uint share = uint(found.transmittance * 255.0 + 0.5);

@@ -14,15 +14,14 @@ float lobe_tangent(float roughness)
 vec3 trace_gloss(vec3 position_world, vec3 normal, vec3 direction, float roughness)
 {
     vec3 origin = voxel_position(position_world);
-    float voxel = voxels.levels[0].size.x;
-    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, origin) < 0.0; level++)
-        voxel = voxels.levels[level + 1u].size.x;
+    float voxel = finest_voxel(origin);
     cone c;
     c.origin = origin + normal * (voxels.pixel_march.y * voxel);
     c.direction = direction;
     c.tangent = lobe_tangent(roughness);
     c.step = min(voxels.pixel_march.x, 1.0);
-    c.widest = 4.0 * voxels.light.w;
+    // As wide as a voxel of the coarsest level or mip, but no wider than four of the coarsest level.
+    c.widest = min(4.0 * voxels.light.w, voxels.levels[voxels.counts.x - 1u].size.x);
     c.reach_m = 1e30;
     cone_light found = trace_cone(c, 1.0);
     vec3 light = found.light * voxels.anchor.w;

@@ -27,10 +27,6 @@
 #define BLOCK_EDGE        8u
 #define CORNELL_TOLERANCE 0.10
 #define OTHER_TOLERANCE   0.15
-// A small bright body looks larger in voxels than it is.
-#define BODY_TOLERANCE 0.2
-// Voxels know no gloss: what metal throws onto walls is spread as if it were matte.
-#define GLOSS_TOLERANCE 0.25
 
 enum compared { COMPARE_INDIRECT, COMPARE_TOTAL };
 
@@ -54,8 +50,8 @@ static const struct energy_case {
     {"corridor", gi_corridor_scene, COMPARE_INDIRECT, 0, OTHER_TOLERANCE},
     {"corridor", gi_corridor_scene, COMPARE_INDIRECT, 1, OTHER_TOLERANCE},
     {"courtyard", gi_courtyard_scene, COMPARE_TOTAL, 0, OTHER_TOLERANCE},
-    {"metal floor", gi_metal_floor_scene, COMPARE_INDIRECT, 0, GLOSS_TOLERANCE},
-    {"glowing ball", gi_glowing_ball_scene, COMPARE_TOTAL, 0, BODY_TOLERANCE},
+    {"metal floor", gi_metal_floor_scene, COMPARE_INDIRECT, 0, OTHER_TOLERANCE},
+    {"glowing ball", gi_glowing_ball_scene, COMPARE_TOTAL, 0, OTHER_TOLERANCE},
 };
 
 // The reference, averaged down to the picture's size.

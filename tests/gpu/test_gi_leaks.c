@@ -1,7 +1,7 @@
 // Proves that light stays in its room. Two closed rooms share a wall one voxel thick, a lamp
 // lights one of them: the other receives less than 1 % of the lit room's mean indirect light. A
-// wall two voxels thick lets nothing through (turned walls: 2.5 % and 0.2 %). Wherever the wall
-// lies between two voxels, and however the rooms are turned.
+// wall two voxels thick lets nothing through. Wherever the wall lies between two voxels, and
+// however the rooms are turned.
 //
 // A voxel is the longest edge of the scene's bounds over 64, which is what a grid of that
 // resolution can do at best. Clip levels are finer near the camera.
@@ -18,10 +18,7 @@
 #define PICTURE_EDGE    32u
 #define RESOLUTION      64.0
 #define ONE_VOXEL_SHARE 0.01
-#define NOTHING         1e-4
-// Walls that no voxel lies along: a face of six takes in a little of what lies behind the wall.
-#define TURNED_ONE_VOXEL_SHARE 0.025
-#define TURNED_NOTHING         2e-3
+#define NOTHING         2e-4 // a tenth of a step of an 8-bit picture, where the lit room is white
 
 static const float turns_rad[] = {0.0f, 0.2f, 0.73f};
 static const float offsets_voxels[] = {0.0f, 0.25f, 0.5f};
@@ -64,8 +61,7 @@ static void check_walls_of_turn(struct gi_report *report, enum gi_method method,
                                 int wall_voxels)
 {
     double edge_m = voxel_edge_m(turns_rad[turn]), lit = 0.0;
-    double allowed = turn == 0 ? (wall_voxels == 1 ? ONE_VOXEL_SHARE : NOTHING)
-                               : (wall_voxels == 1 ? TURNED_ONE_VOXEL_SHARE : TURNED_NOTHING);
+    double allowed = wall_voxels == 1 ? ONE_VOXEL_SHARE : NOTHING;
     for (size_t offset = 0; offset < 3; offset++) {
         // Of turned rooms and of thick walls a diagonal of the table is enough.
         if (!gi_test_is_full() && (turn > 0 || wall_voxels > 1) && offset != turn)

@@ -1,0 +1,110 @@
+// voxcast accuracy: error against time for every setting of a ladder. The parts that its command
+// (cli_accuracy.c) puts together; results are kept as JSON, as results.json has them.
+#ifndef VOXCAST_SERVER_ACCURACY_H
+#define VOXCAST_SERVER_ACCURACY_H
+
+#include "server/cli_shot.h"
+
+#define RUNG_NAME_SIZE   64u
+#define RUNG_TEXT_SIZE   64u
+#define RUNG_MAX_SETS    16u
+#define LADDER_MAX_RUNGS 256u
+
+// Noise of the truth over the smallest error, up to which errors are believed.
+#define RESULTS_NOISE_SHARE 0.1
+
+struct cJSON;
+
+// One setting that is measured.
+struct rung {
+    char name[RUNG_NAME_SIZE]; // letters, digits, '-', '_' and '.': names its files
+    enum quality quality;
+    double scale; // size it is rendered at over the size shown: 0.25 to 1, or 2
+    uint32_t set_count;
+    struct {
+        char key[RUNG_TEXT_SIZE], value[RUNG_TEXT_SIZE]; // a field of settings
+    } sets[RUNG_MAX_SETS];
+};
+
+struct ladder {
+    uint32_t rung_count;
+    struct rung rungs[LADDER_MAX_RUNGS];
+};
+
+// "quick" (the presets), "full" (methods, voxels, gather modes, cones, steps, bounces, levels and
+// scales, in turn), or a file: a JSON array of {"name", "preset", "scale", "set": {"KEY": VALUE}},
+// all but the name optional. False with a message that names rung, key and range.
+bool ladder_load(const char *name, struct ladder *out_ladder, struct error *out_error);
+
+// Applies quality and sets; size and scale are the caller's.
+bool rung_apply(const struct rung *rung, struct frame_params *params, struct error *out_error);
+
+// {"preset", "scale", "set"}: equal text means equal settings. The caller deletes it.
+struct cJSON *rung_json(const struct rung *rung);
+
+// What pictures are compared with.
+struct truth {
+    struct picture picture;
+    struct picture direct; // emission, background, and light of lamps and emitters reflected once;
+                           // no pixels if that is not known
+    double noise;          // standard error over mean radiance; NaN if that is not known
+};
+
+struct truth_params {
+    const struct cli_shot *shot;
+    const char *path, *direct_path; // files; NULL to trace
+    uint32_t samples;               // a pixel, if until_noise is 0
+    double until_noise;             // trace until the noise is no more than this
+    const char *folder;             // where a traced picture is kept, and found again
+    const struct cJSON *identity;   // says what scene and view is traced
+};
+
+// Loads or traces the truth; tells on stderr how it goes. Tracing takes all processors. False with
+// a message, such as that a file is of another size; then nothing needs finishing.
+bool truth_get(const struct truth_params *params, struct truth *out_truth, struct error *out_error);
+void truth_finish(struct truth *truth);
+
+// What all rungs of one run share.
+struct accuracy {
+    struct cli_shot shot; // its settings and camera are those that rungs start from
+    struct truth truth;
+    bool *self_lit; // pixels near those that show emission or background: left out where indirect
+                    // light is judged alone, since their edges outshine it
+    struct display_params display;
+    const char *folder;
+    uint32_t frames; // of a moving camera that are measured
+    uint32_t edits;  // of a light that are measured; 0 for none
+};
+
+// Measures one rung and writes its pictures into the folder. The entry of results.json is the
+// caller's; NULL with a message.
+struct cJSON *accuracy_measure(const struct accuracy *accuracy, const struct rung *rung,
+                               struct error *out_error);
+
+// The scene as it was loaded and edited, and the view of it.
+struct cJSON *accuracy_identity(const struct cli_shot_options *options,
+                                const struct cli_shot *shot);
+
+// All that results depend on, beside the rung: equal text means that they can be kept. Program and
+// shaders count by size and time of change. `reference_path` is NULL for a traced truth.
+struct cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_path,
+                             const struct cJSON *identity);
+
+// Results of a run: {"setup", "metrics", "rungs", "noise"}; the last compares the noise of the
+// truth with the smallest error of a final picture, both over the mean of the truth.
+//
+// Reads the folder's results.json if it is of the same set-up, else starts anew. `setup` is taken
+// over. `out_kept` says how many rungs are there already.
+struct cJSON *results_open(const char *folder, struct cJSON *setup, uint32_t *out_kept);
+
+// The rung's entry, or NULL.
+const struct cJSON *results_find(const struct cJSON *results, const struct rung *rung);
+
+// Adds an entry (taken over) in the place of one of the same name, and marks the Pareto front of
+// each metric anew: rungs than which none is both faster and less wrong.
+void results_add(struct cJSON *results, struct cJSON *entry);
+
+// Writes results.json, results.csv and the report: index.html, report.js, results.js.
+bool results_write(const struct cJSON *results, const char *folder, struct error *out_error);
+
+#endif

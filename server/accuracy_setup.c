@@ -1,0 +1,120 @@
+// What results depend on: the scene as it is shown, the program, and the truth.
+#include <cjson/cJSON.h>
+#include <ftw.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "server/accuracy.h"
+
+#define MAX_OPEN_FILES 16
+
+// FNV-1a, 64 bits.
+#define HASH_START 14695981039346656037ull
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
+{
+    const uint8_t *at = bytes;
+    for (size_t i = 0; i < count; i++)
+        hash = (hash ^ at[i]) * 1099511628211ull;
+    return hash;
+}
+
+// A file's name, size and time of change.
+static uint64_t hash_file(uint64_t hash, const char *path, const struct stat *status)
+{
+    int64_t facts[3] = {status->st_size, status->st_mtim.tv_sec, status->st_mtim.tv_nsec};
+    hash = hash_bytes(hash, path, strlen(path));
+    return hash_bytes(hash, facts, sizeof(facts));
+}
+
+static uint64_t hash_path(uint64_t hash, const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 ? hash_file(hash, path, &status) : hash;
+}
+
+// nftw() has no argument for its callback, and visits in no order: sums do not depend on it.
+static uint64_t shader_hash;
+
+static int add_shader(const char *path, const struct stat *status, int kind, struct FTW *place)
+{
+    (void)place;
+    if (kind == FTW_F)
+        shader_hash += hash_file(HASH_START, path, status);
+    return 0;
+}
+
+static void add_hash(cJSON *object, const char *name, uint64_t hash)
+{
+    char text[32];
+    snprintf(text, sizeof(text), "%016llx", (unsigned long long)hash);
+    cJSON_AddStringToObject(object, name, text);
+}
+
+static void add_vector(cJSON *object, const char *name, const float vector[3])
+{
+    double values[3] = {(double)vector[0], (double)vector[1], (double)vector[2]};
+    cJSON_AddItemToObject(object, name, cJSON_CreateDoubleArray(values, 3));
+}
+
+// The scene as it was loaded and edited, and the view of it.
+cJSON *accuracy_identity(const struct cli_shot_options *options, const struct cli_shot *shot)
+{
+    const struct frame_params *params = &shot->params;
+    uint64_t hash = HASH_START;
+    for (uint32_t i = 0; i < shot->scene->source_file_count; i++)
+        hash = hash_path(hash, shot->scene->source_files[i]);
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "version", VOXCAST_VERSION);
+    cJSON_AddStringToObject(json, "source", options->source);
+    add_hash(json, "files", hash);
+    cJSON *sets = cJSON_AddArrayToObject(json, "set");
+    for (uint32_t i = 0; i < options->settings.sets.count; i++)
+        cJSON_AddItemToArray(sets, cJSON_CreateString(options->settings.sets.values[i]));
+    cJSON_AddNumberToObject(json, "width", params->width);
+    cJSON_AddNumberToObject(json, "height", params->height);
+    add_vector(json, "eye", params->camera.eye);
+    add_vector(json, "target", params->camera.target);
+    add_vector(json, "up", params->camera.up);
+    cJSON_AddNumberToObject(json, "fov_y_rad", (double)params->camera.fov_y_rad);
+    return json;
+}
+
+static double mean_radiance(const struct picture *picture)
+{
+    double sum = 0.0;
+    size_t count = 3 * picture_pixel_count(picture);
+    for (size_t i = 0; i < count; i++)
+        sum += isfinite(picture->rgb[i]) ? (double)picture->rgb[i] : 0.0;
+    return sum / (double)count;
+}
+
+// All that results depend on, beside the rung.
+cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_path,
+                      const cJSON *identity)
+{
+    const struct picture *truth = &accuracy->truth.picture;
+    cJSON *setup = cJSON_CreateObject();
+    cJSON_AddItemToObject(setup, "scene", cJSON_Duplicate(identity, true));
+    cJSON_AddStringToObject(setup, "gl_renderer",
+                            renderer_get_info(accuracy->shot.renderer)->gl_renderer);
+    add_hash(setup, "program", hash_path(HASH_START, "/proc/self/exe"));
+    shader_hash = 0;
+    nftw(renderer_get_shader_dir(accuracy->shot.renderer), add_shader, MAX_OPEN_FILES, FTW_PHYS);
+    add_hash(setup, "shaders", shader_hash);
+    cJSON_AddStringToObject(setup, "gi", gi_method_names[accuracy->shot.params.settings.gi_method]);
+    cJSON_AddNumberToObject(setup, "frames", accuracy->frames);
+    cJSON_AddNumberToObject(setup, "edits", accuracy->edits);
+    cJSON_AddNumberToObject(setup, "exposure", (double)accuracy->display.exposure);
+    cJSON_AddStringToObject(setup, "tonemap", tonemap_names[accuracy->display.tonemap]);
+    cJSON *reference = cJSON_AddObjectToObject(setup, "reference");
+    cJSON_AddStringToObject(reference, "source", reference_path ? reference_path : "traced");
+    cJSON_AddNumberToObject(reference, "noise", accuracy->truth.noise); // null if not known
+    add_hash(reference, "pixels",
+             hash_bytes(HASH_START, truth->rgb, 3 * sizeof(float) * picture_pixel_count(truth)));
+    cJSON_AddNumberToObject(reference, "mean", mean_radiance(truth));
+    cJSON_AddBoolToObject(reference, "direct", accuracy->truth.direct.rgb != NULL);
+    return setup;
+}

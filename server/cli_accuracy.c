@@ -1,0 +1,267 @@
+// voxcast accuracy: what accuracy costs in time, for every setting of a ladder.
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "server/accuracy.h"
+#include "server/cli.h"
+#include "server/cli_bench.h"
+
+#define DEFAULT_FRAMES  12
+#define DEFAULT_NOISE   0.01
+#define BAR_LENGTH      20u
+#define SELF_LIT_MARGIN 2 // pixels, as far as resampling at draft quality reaches
+
+static const char usage[] =
+    "usage: voxcast accuracy SCENE|builtin:NAME --out DIR [OPTIONS]\n"
+    "\n"
+    "Renders (or loads) the truth, then one view by every setting of a ladder, and writes into "
+    "DIR\n"
+    "results.json, results.csv, a page with charts (index.html), and pictures. Each rung is "
+    "measured\n"
+    "in a scene that has just been loaded: its first picture (cold) and the one it settles on\n"
+    "(converged) against the truth, frames of a moving camera, memory, and edits of a light.\n"
+    "Rungs than which no other is both faster and less wrong are marked as the Pareto front.\n"
+    "What is there already of the same set-up is kept: a run that was stopped goes on.\n"
+    "\n"
+    "  --out DIR            made if it is not there\n"
+    "  --ladder NAME|FILE   quick (no indirect light, and the presets), full (50 rungs), or a "
+    "file:\n"
+    "                       [{\"name\", \"preset\", \"scale\", \"set\": {\"cone_set\": \"9\", "
+    "...}}, ...]\n"
+    "                       (default quick)\n"
+    "  --reference FILE     the truth, a .pfm of --size\n"
+    "  --reference-direct FILE   its emission and light of lamps and emitters reflected once, to\n"
+    "                       judge indirect light alone, too (light of the sky counts as such)\n"
+    "  --reference-spp N    trace the truth with N samples a pixel, 1 to 1048576\n"
+    "  --until-noise X      trace until its noise is X, 0.0001 to 1 (default 0.01): standard "
+    "error\n"
+    "                       of pixels over the mean of the picture\n"
+    "  --frames N           frames of a moving camera that are measured, at most 4 s of them,\n"
+    "                       1 to 1000 (default 12)\n"
+    "  --edits N            edits of a light that are measured, 0 to 100 (default 2)\n"
+    "  --size WxH           1x1 to 3840x2160 (default 640x360)\n"
+    "  --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu   as voxcast render;\n"
+    "                       --gi and --set hold for the rungs that do not say otherwise\n";
+
+struct accuracy_options {
+    struct cli_shot_options shot;
+    const char *out, *ladder, *reference, *reference_direct;
+    uint32_t spp, frames, edits;
+    double until_noise;
+};
+
+static void print_progress(uint32_t done, uint32_t count, const char *name, double took_s,
+                           double left_s)
+{
+    char bar[BAR_LENGTH + 1];
+    for (uint32_t i = 0; i < BAR_LENGTH; i++)
+        bar[i] = i * count < done * BAR_LENGTH ? '#' : '.';
+    bar[BAR_LENGTH] = '\0';
+    fprintf(stderr, "voxcast: [%s] %u of %u, %s took %.1f s, about %.0f min %02.0f s left\n", bar,
+            done, count, name, took_s, floor(left_s / 60.0), floor(fmod(left_s, 60.0)));
+}
+
+static void warn_of_noise(const cJSON *results)
+{
+    const cJSON *noise = cJSON_GetObjectItemCaseSensitive(results, "noise");
+    const cJSON *reference = cJSON_GetObjectItemCaseSensitive(noise, "reference");
+    double smallest =
+        cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(noise, "smallest_error"));
+    if (cJSON_IsNumber(reference) && reference->valuedouble > RESULTS_NOISE_SHARE * smallest)
+        fprintf(stderr,
+                "voxcast: warning: the noise of the reference, %.2f %%, is more than a tenth of "
+                "the smallest error, %.2f %%; --until-noise %.2g would do\n",
+                100.0 * reference->valuedouble, 100.0 * smallest, RESULTS_NOISE_SHARE * smallest);
+}
+
+// Measures the rungs that are not there yet; writes everything after each.
+static bool climb(const struct accuracy *accuracy, const struct ladder *ladder, cJSON *results,
+                  struct error *out_error)
+{
+    uint32_t left = 0, measured = 0;
+    for (uint32_t i = 0; i < ladder->rung_count; i++)
+        left += results_find(results, &ladder->rungs[i]) == NULL;
+    double started_ms = bench_now_ms();
+    for (uint32_t i = 0; i < ladder->rung_count; i++) {
+        const struct rung *rung = &ladder->rungs[i];
+        double rung_started_ms = bench_now_ms();
+        if (results_find(results, rung))
+            continue;
+        cJSON *entry = accuracy_measure(accuracy, rung, out_error);
+        if (!entry)
+            return false;
+        results_add(results, entry);
+        if (!results_write(results, accuracy->folder, out_error))
+            return false;
+        left--;
+        measured++;
+        double now_ms = bench_now_ms();
+        print_progress(ladder->rung_count - left, ladder->rung_count, rung->name,
+                       1e-3 * (now_ms - rung_started_ms),
+                       1e-3 * (now_ms - started_ms) / measured * left);
+    }
+    warn_of_noise(results);
+    return results_write(results, accuracy->folder, out_error);
+}
+
+static bool write_reference_png(const struct accuracy *accuracy, struct error *out_error)
+{
+    const struct picture *truth = &accuracy->truth.picture;
+    char path[4096];
+    uint8_t *rgb = malloc(3 * picture_pixel_count(truth));
+    if (!rgb)
+        return error_set(out_error, "out of memory");
+    display_bytes(&accuracy->display, truth, rgb);
+    snprintf(path, sizeof(path), "%s/reference.png", accuracy->folder);
+    bool done = cli_write_png(path, truth->width, truth->height, rgb, out_error);
+    free(rgb);
+    return done;
+}
+
+// Marks the pixels whose rays meet nothing or what shines, and those near by.
+static bool find_self_lit(struct accuracy *accuracy, struct error *out_error)
+{
+    const struct frame_params *params = &accuracy->shot.params;
+    const struct scene *scene = accuracy->shot.scene;
+    int width = (int)params->width, height = (int)params->height;
+    accuracy->self_lit = calloc((size_t)width * (size_t)height, sizeof(bool));
+    if (!accuracy->self_lit)
+        return error_set(out_error, "out of memory");
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            struct ray_hit hit;
+            if (renderer_pick(accuracy->shot.renderer, &params->camera, params->width,
+                              params->height, (float)x, (float)y, &hit)) {
+                const struct scene_material *material = &scene->materials[hit.material];
+                if (material->emissive_strength *
+                        (material->emissive[0] + material->emissive[1] + material->emissive[2]) ==
+                    0.0f)
+                    continue;
+            }
+            for (int j = y - SELF_LIT_MARGIN; j <= y + SELF_LIT_MARGIN; j++)
+                for (int i = x - SELF_LIT_MARGIN; i <= x + SELF_LIT_MARGIN; i++)
+                    if (i >= 0 && i < width && j >= 0 && j < height)
+                        accuracy->self_lit[j * width + i] = true;
+        }
+    return true;
+}
+
+static void choose_display(struct accuracy *accuracy)
+{
+    const struct render_settings *settings = &accuracy->shot.params.settings;
+    float exposure = exp2f(settings->exposure_ev);
+    if (settings->exposure_mode == EXPOSURE_AUTOMATIC)
+        exposure *= display_automatic_exposure(&accuracy->truth.picture);
+    accuracy->display = (struct display_params){
+        .exposure = exposure, .tonemap = settings->tonemap, .gamma = settings->gamma};
+}
+
+static bool run(const struct accuracy_options *options, struct accuracy *accuracy,
+                const struct ladder *ladder, struct error *out_error)
+{
+    uint32_t kept;
+    cJSON *identity = accuracy_identity(&options->shot, &accuracy->shot);
+    bool done = truth_get(&(struct truth_params){.shot = &accuracy->shot,
+                                                 .path = options->reference,
+                                                 .direct_path = options->reference_direct,
+                                                 .samples = options->spp,
+                                                 .until_noise = options->until_noise,
+                                                 .folder = accuracy->folder,
+                                                 .identity = identity},
+                          &accuracy->truth, out_error);
+    if (done) {
+        choose_display(accuracy);
+        cJSON *results = results_open(
+            accuracy->folder, accuracy_setup(accuracy, options->reference, identity), &kept);
+        if (kept > 0)
+            fprintf(stderr, "voxcast: %u rungs of the same set-up are there already\n", kept);
+        done = write_reference_png(accuracy, out_error) && find_self_lit(accuracy, out_error) &&
+               climb(accuracy, ladder, results, out_error);
+        cJSON_Delete(results);
+        truth_finish(&accuracy->truth);
+        free(accuracy->self_lit);
+    }
+    cJSON_Delete(identity);
+    return done;
+}
+
+// False when the command is to end with *out_status.
+static bool parse_options(int argc, char **argv, struct accuracy_options *options, int *out_status)
+{
+    struct cli_parser parser = {.command = "accuracy", .usage = usage, .max_arguments = 1};
+    *options = (struct accuracy_options){
+        .shot.size = {640, 360}, .ladder = "quick", .frames = DEFAULT_FRAMES, .edits = 2};
+    cli_take_shot(&parser, &options->shot);
+    cli_take_text(&parser, "out", &options->out);
+    cli_take_text(&parser, "ladder", &options->ladder);
+    cli_take_text(&parser, "reference", &options->reference);
+    cli_take_text(&parser, "reference-direct", &options->reference_direct);
+    cli_take_count(&parser, "reference-spp", 1, 1u << 20, &options->spp);
+    cli_take_number(&parser, "until-noise", 1e-4, 1.0, &options->until_noise);
+    cli_take_count(&parser, "frames", 1, 1000, &options->frames);
+    cli_take_count(&parser, "edits", 0, 100, &options->edits);
+    if (!cli_parse(&parser, argc, argv, out_status))
+        return false;
+    const char *wrong = NULL;
+    options->shot.source = parser.arguments[0];
+    int truths = (options->reference != NULL) + (options->spp > 0) + (options->until_noise > 0.0);
+    if (parser.argument_count == 0)
+        wrong = "no scene given; see voxcast accuracy --help";
+    else if (!options->out)
+        wrong = "no --out DIR given";
+    else if (truths > 1)
+        wrong = "--reference, --reference-spp and --until-noise exclude each other";
+    else if (options->reference_direct && !options->reference)
+        wrong = "--reference-direct needs --reference";
+    else if (options->shot.settings.preset != CLI_NO_CHOICE ||
+             options->shot.settings.view != CLI_NO_CHOICE)
+        wrong = "--preset and --view are up to the ladder; see voxcast accuracy --help";
+    if (truths == 0)
+        options->until_noise = DEFAULT_NOISE;
+    if (wrong)
+        *out_status = cli_fail(CLI_EXIT_USAGE, "%s", wrong);
+    return !wrong;
+}
+
+static int open_and_run(const struct accuracy_options *options, struct accuracy *accuracy,
+                        const struct ladder *ladder)
+{
+    struct error error = {""};
+    int status = cli_shot_open(&options->shot, QUALITY_HIGH, &accuracy->shot);
+    if (status != 0)
+        return status;
+    if (!run(options, accuracy, ladder, &error))
+        status = cli_fail(CLI_EXIT_RENDER, "%s", error.message);
+    else if (renderer_gl_error_count(accuracy->shot.renderer) > 0)
+        status = cli_fail(CLI_EXIT_RENDER, "the GL driver reported %llu errors",
+                          (unsigned long long)renderer_gl_error_count(accuracy->shot.renderer));
+    cli_shot_close(&accuracy->shot);
+    return status;
+}
+
+int cli_accuracy(int argc, char **argv)
+{
+    struct accuracy_options options;
+    struct error error = {""};
+    int status;
+    if (!parse_options(argc, argv, &options, &status))
+        return status;
+    struct accuracy accuracy = {
+        .folder = options.out, .frames = options.frames, .edits = options.edits};
+    struct ladder *ladder = malloc(sizeof(*ladder)); // too large for the stack
+    if (!ladder)
+        return cli_fail(CLI_EXIT_RENDER, "out of memory");
+    if (!ladder_load(options.ladder, ladder, &error))
+        status = cli_fail(CLI_EXIT_USAGE, "%s", error.message);
+    else if (mkdir(options.out, 0777) != 0 && errno != EEXIST)
+        status = cli_fail(CLI_EXIT_OUTPUT, "cannot make \"%s\": %s", options.out, strerror(errno));
+    else
+        status = open_and_run(&options, &accuracy, ladder);
+    free(ladder);
+    return status;
+}

@@ -1,0 +1,279 @@
+// Proves voxcast accuracy: ladders are read or refused with a reason, the Pareto front is what it
+// should be for made-up results, and a small run writes its files, keeps them, and goes on where it
+// was stopped.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cjson/cJSON.h>
+#include <cmocka.h>
+
+#include "server/accuracy.h"
+#include "server/cli.h"
+
+static char folder[] = "/tmp/voxcast-accuracy-XXXXXX";
+
+static void name_file(char path[256], const char *name)
+{
+    snprintf(path, 256, "%s/%s", folder, name);
+}
+
+static void write_file(const char *name, const char *text)
+{
+    char path[256];
+    name_file(path, name);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static cJSON *read_results(void)
+{
+    char path[256];
+    name_file(path, "results.json");
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    char *text = calloc(1, 1 << 20);
+    assert_non_null(text);
+    assert_true(fread(text, 1, (1 << 20) - 1, file) > 0);
+    fclose(file);
+    cJSON *json = cJSON_Parse(text);
+    free(text);
+    assert_non_null(json);
+    return json;
+}
+
+static const cJSON *at(const cJSON *json, const char *name)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, name);
+    if (!item)
+        fail_msg("there is no \"%s\"", name);
+    return item;
+}
+
+static void test_named_ladders(void **state)
+{
+    (void)state;
+    struct ladder *ladder = malloc(sizeof(*ladder));
+    struct error error = {""};
+    assert_non_null(ladder);
+    assert_true(ladder_load("quick", ladder, &error));
+    assert_int_equal(ladder->rung_count, 1 + QUALITY_COUNT);
+    if (!ladder_load("full", ladder, &error))
+        fail_msg("%s", error.message);
+    assert_int_equal(ladder->rung_count, 50);
+    for (uint32_t i = 0; i < ladder->rung_count; i++)
+        for (uint32_t k = 0; k < i; k++)
+            assert_string_not_equal(ladder->rungs[i].name, ladder->rungs[k].name);
+    free(ladder);
+}
+
+static void test_ladders_in_files(void **state)
+{
+    (void)state;
+    struct ladder *ladder = malloc(sizeof(*ladder));
+    struct error error = {""};
+    char path[256];
+    assert_non_null(ladder);
+    write_file("ladder.json", "[{\"name\": \"a\", \"preset\": \"draft\", \"scale\": 0.5, \"set\": "
+                              "{\"cone_set\": 16, \"settings.soft_shadows\": false}}]");
+    name_file(path, "ladder.json");
+    if (!ladder_load(path, ladder, &error))
+        fail_msg("%s", error.message);
+    struct frame_params params = {0};
+    render_settings_init(&params.settings);
+    assert_true(rung_apply(&ladder->rungs[0], &params, &error));
+    assert_int_equal(params.quality, QUALITY_DRAFT);
+    assert_int_equal(params.settings.cone_set, CONE_SET_16);
+    assert_false(params.settings.soft_shadows);
+    static const char *const wrong[][2] = {
+        {"", "no JSON"},
+        {"[]", "array of rungs"},
+        {"[{}]", "name"},
+        {"[{\"name\": \"../a\"}]", "../a"},
+        {"[{\"name\": \"a\", \"preset\": \"best\"}]", "preset"},
+        {"[{\"name\": \"a\", \"scale\": 3}]", "scale"},
+        {"[{\"name\": \"a\", \"set\": {\"nothing\": 1}}]", "nothing"},
+        {"[{\"name\": \"a\", \"set\": {\"lights.0.intensity\": 1}}]", "lights.0.intensity"},
+        {"[{\"name\": \"a\", \"set\": {\"cone_step\": 99}}]", "cone_step"},
+        {"[{\"name\": \"a\"}, {\"name\": \"a\"}]", "two rungs"},
+    };
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+        write_file("ladder.json", wrong[i][0]);
+        if (ladder_load(path, ladder, &error) || !strstr(error.message, wrong[i][1]))
+            fail_msg("%s: \"%s\"", wrong[i][0], error.message);
+    }
+    assert_false(ladder_load("/no/such/file", ladder, &error));
+    assert_non_null(strstr(error.message, "quick, full or a file"));
+    free(ladder);
+}
+
+static cJSON *made_up_entry(const char *name, double ms, double flip, double ssim)
+{
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddStringToObject(entry, "name", name);
+    cJSON_AddNumberToObject(cJSON_AddObjectToObject(entry, "frame_ms"), "median", ms);
+    cJSON *metrics =
+        cJSON_AddObjectToObject(cJSON_AddObjectToObject(entry, "converged"), "metrics");
+    cJSON_AddNumberToObject(metrics, "ldr_flip", flip);
+    cJSON_AddNumberToObject(metrics, "ssim", ssim);
+    cJSON_AddNumberToObject(metrics, "energy_red", 1.0 - flip);
+    return entry;
+}
+
+// Whether the rung is on the front of the metric.
+static bool is_marked(const cJSON *results, const char *name, const char *metric)
+{
+    const cJSON *entry, *item;
+    cJSON_ArrayForEach(entry, at(results, "rungs"))
+    {
+        if (strcmp(at(entry, "name")->valuestring, name) != 0)
+            continue;
+        cJSON_ArrayForEach(item, at(entry, "pareto"))
+        {
+            if (strcmp(item->valuestring, metric) == 0)
+                return true;
+        }
+    }
+    return false;
+}
+
+static void test_pareto_front(void **state)
+{
+    (void)state;
+    uint32_t kept;
+    cJSON *results = results_open("/no/such/folder", cJSON_CreateObject(), &kept);
+    assert_int_equal(kept, 0);
+    results_add(results, made_up_entry("fast", 1.0, 0.5, 0.2));
+    results_add(results, made_up_entry("good", 10.0, 0.1, 0.9));
+    results_add(results, made_up_entry("slower", 20.0, 0.1, 0.95));
+    results_add(results, made_up_entry("worse", 10.0, 0.3, 0.8));
+    assert_true(is_marked(results, "fast", "ldr_flip"));
+    assert_true(is_marked(results, "good", "ldr_flip"));
+    assert_false(is_marked(results, "slower", "ldr_flip"));
+    assert_false(is_marked(results, "worse", "ldr_flip"));
+    assert_true(is_marked(results, "slower", "ssim"));
+    // Too dark is as wrong as too bright.
+    assert_true(is_marked(results, "good", "energy_red"));
+    assert_false(is_marked(results, "slower", "energy_red"));
+    // A rung measured again takes its old place, and marks change.
+    results_add(results, made_up_entry("fast", 1.0, 0.05, 0.99));
+    assert_int_equal(cJSON_GetArraySize(at(results, "rungs")), 4);
+    assert_false(is_marked(results, "good", "ldr_flip"));
+    cJSON_Delete(results);
+}
+
+static int run_accuracy(const char *size)
+{
+    char ladder[256];
+    name_file(ladder, "ladder.json");
+    const char *const words[] = {"accuracy",        "builtin:cornell",
+                                 "--out",           folder,
+                                 "--ladder",        ladder,
+                                 "--reference-spp", "16",
+                                 "--size",          size,
+                                 "--frames",        "1",
+                                 "--edits",         "1"};
+    char *arguments[16];
+    int count = (int)(sizeof(words) / sizeof(words[0]));
+    for (int i = 0; i < count; i++)
+        arguments[i] = (char *)(uintptr_t)words[i];
+    return cli_accuracy(count, arguments);
+}
+
+static void assert_file(const char *name)
+{
+    char path[256];
+    struct stat status;
+    name_file(path, name);
+    if (stat(path, &status) != 0 || status.st_size == 0)
+        fail_msg("%s is missing", name);
+}
+
+static void test_a_run(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"results.json",   "results.csv",       "results.js",
+                                        "index.html",     "report.js",         "reference.pfm",
+                                        "reference.png",  "none-strip.png",    "half-error.png",
+                                        "half-strip.png", "half-converged.png"};
+    write_file("ladder.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}]");
+    assert_int_equal(run_accuracy("48x27"), 0);
+    // A second rung is measured; the first is not measured again.
+    cJSON *results = read_results();
+    double first_ms =
+        at(at(cJSON_GetArrayItem(at(results, "rungs"), 0), "frame_ms"), "median")->valuedouble;
+    cJSON_Delete(results);
+    write_file("ladder.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}, "
+                              "{\"name\": \"half\", \"scale\": 0.5, \"preset\": \"draft\"}]");
+    assert_int_equal(run_accuracy("48x27"), 0);
+    for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++)
+        assert_file(files[i]);
+    results = read_results();
+    const cJSON *rungs = at(results, "rungs");
+    assert_int_equal(cJSON_GetArraySize(rungs), 2);
+    const cJSON *none = cJSON_GetArrayItem(rungs, 0), *half = cJSON_GetArrayItem(rungs, 1);
+    assert_true(at(at(none, "frame_ms"), "median")->valuedouble == first_ms);
+    // Without indirect light, there is none; by voxels there is about as much as there should be.
+    const cJSON *dark = at(at(none, "converged"), "indirect");
+    const cJSON *lit = at(at(half, "converged"), "indirect");
+    assert_true(fabs(at(dark, "energy_green")->valuedouble) < 0.01);
+    assert_true(fabs(at(lit, "energy_green")->valuedouble - 1.0) < 0.35);
+    assert_true(at(lit, "rmse")->valuedouble < at(dark, "rmse")->valuedouble);
+    assert_true(at(at(half, "edit"), "arrived_ms")->valuedouble > 0.0);
+    assert_true(at(half, "memory_bytes")->valuedouble > 0.0);
+    assert_true(at(at(half, "converged"), "settled")->type == cJSON_True);
+    assert_true(at(at(results, "noise"), "reference")->valuedouble > 0.0);
+    cJSON_Delete(results);
+    // Another set-up starts anew.
+    write_file("ladder.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}]");
+    assert_int_equal(run_accuracy("32x18"), 0);
+    results = read_results();
+    assert_int_equal(cJSON_GetArraySize(at(results, "rungs")), 1);
+    cJSON_Delete(results);
+}
+
+static void test_wrong_truths(void **state)
+{
+    (void)state;
+    struct error error = {""};
+    struct picture picture;
+    char path[256];
+    assert_true(picture_init(&picture, 8, 8));
+    name_file(path, "small.pfm");
+    assert_true(picture_write_pfm(path, &picture, &error));
+    picture_finish(&picture);
+    struct cli_shot shot = {.params = {.width = 16, .height = 9}};
+    struct truth_params params = {.shot = &shot, .path = path};
+    struct truth truth;
+    assert_false(truth_get(&params, &truth, &error));
+    assert_non_null(strstr(error.message, "8x8"));
+    assert_non_null(strstr(error.message, "16x9"));
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    char command[300];
+    snprintf(command, sizeof(command), "rm -rf '%s'", folder);
+    return system(command);
+}
+
+int main(void)
+{
+    if (!mkdtemp(folder))
+        return 1;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_named_ladders), cmocka_unit_test(test_ladders_in_files),
+        cmocka_unit_test(test_pareto_front),  cmocka_unit_test(test_wrong_truths),
+        cmocka_unit_test(test_a_run),
+    };
+    return cmocka_run_group_tests(tests, NULL, remove_folder);
+}
