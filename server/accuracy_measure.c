@@ -181,6 +181,7 @@ static bool measure_edits(struct rung_work *work, struct error *out_error)
     const struct accuracy *accuracy = work->accuracy;
     struct edit_params params = {.renderer = accuracy->shot.renderer,
                                  .scene = accuracy->shot.scene,
+                                 .view = work->view,
                                  .frame = &work->params,
                                  .light = SCENE_NONE,
                                  .material = SCENE_NONE,
@@ -314,11 +315,13 @@ static bool measure(struct rung_work *work, struct error *out_error)
     work->view = renderer_view_create(accuracy->shot.renderer);
     if (!work->view)
         return error_set(out_error, "out of memory");
-    bool done = draw_pictures(work, out_error) && draw_direct(work, out_error);
+    // Edits go on from the picture that has settled.
+    bool done = draw_pictures(work, out_error) && draw_direct(work, out_error) &&
+                measure_edits(work, out_error);
     renderer_view_destroy(accuracy->shot.renderer, &work->view);
     return done && judge_picture(work, "cold", &work->cold, out_error) &&
            judge_picture(work, "converged", &work->converged, out_error) &&
-           write_pictures(work, out_error) && measure_edits(work, out_error);
+           write_pictures(work, out_error);
 }
 
 cJSON *accuracy_measure(const struct accuracy *accuracy, const struct rung *rung,

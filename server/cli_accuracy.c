@@ -43,7 +43,7 @@ static const char usage[] =
     "                       of pixels over the mean of the picture\n"
     "  --frames N           frames of a moving camera that are measured, at most 4 s of them,\n"
     "                       1 to 1000 (default 12)\n"
-    "  --edits N            edits of a light that are measured, 0 to 100 (default 2)\n"
+    "  --edits N            edits of a light that are measured, 0 to 100 (default 1)\n"
     "  --size WxH           1x1 to 3840x2160 (default 640x360)\n"
     "  --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu   as voxcast render;\n"
     "                       --gi and --set hold for the rungs that do not say otherwise\n";
@@ -195,7 +195,7 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
 {
     struct cli_parser parser = {.command = "accuracy", .usage = usage, .max_arguments = 1};
     *options = (struct accuracy_options){
-        .shot.size = {640, 360}, .ladder = "quick", .frames = DEFAULT_FRAMES, .edits = 2};
+        .shot.size = {640, 360}, .ladder = "quick", .frames = DEFAULT_FRAMES, .edits = 1};
     cli_take_shot(&parser, &options->shot);
     cli_take_text(&parser, "out", &options->out);
     cli_take_text(&parser, "ladder", &options->ladder);
