@@ -20,8 +20,9 @@ static uint64_t get(const uint8_t **at, size_t bytes)
 
 void frame_header_encode(const struct frame_header *header, uint8_t *out)
 {
-    uint32_t convergence_bits;
+    uint32_t convergence_bits, noise_bits;
     memcpy(&convergence_bits, &header->convergence, 4);
+    memcpy(&noise_bits, &header->reference_noise, 4);
     memcpy(out, "VXF1", 4);
     uint8_t *at = put(out + 4, FRAME_HEADER_BYTES, 2);
     at = put(at, header->flags, 2);
@@ -44,7 +45,8 @@ void frame_header_encode(const struct frame_header *header, uint8_t *out)
     at = put(at, header->send_wait_us, 4);
     at = put(at, header->draw_at_us, 8);
     at = put(at, header->sent_at_us, 8);
-    put(at, 0, 8);
+    at = put(at, header->reference_samples, 4);
+    put(at, noise_bits, 4);
 }
 
 bool frame_header_decode(const uint8_t *bytes, size_t length, struct frame_header *out_header,
@@ -79,6 +81,9 @@ bool frame_header_decode(const uint8_t *bytes, size_t length, struct frame_heade
     header.send_wait_us = (uint32_t)get(&at, 4);
     header.draw_at_us = get(&at, 8);
     header.sent_at_us = get(&at, 8);
+    header.reference_samples = (uint32_t)get(&at, 4);
+    uint32_t noise_bits = (uint32_t)get(&at, 4);
+    memcpy(&header.reference_noise, &noise_bits, 4);
     *out_header = header;
     *out_jpeg_offset = header_bytes;
     return true;

@@ -33,6 +33,8 @@ struct frame_header {
     uint32_t send_wait_us;
     uint64_t draw_at_us; // monotonic clock
     uint64_t sent_at_us;
+    uint32_t reference_samples; // per pixel, of a reference's picture; else 0
+    float reference_noise;      // standard error of a pixel over the mean luminance; 0: unknown
 };
 
 // Writes FRAME_HEADER_BYTES bytes.

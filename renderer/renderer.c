@@ -28,6 +28,7 @@ struct renderer {
     struct view *views[RENDERER_MAX_VIEWS]; // the first view_count
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
+    struct live_scene live_scene; // of references
 };
 
 static double now_ms(void)
@@ -76,6 +77,7 @@ void renderer_destroy(struct renderer **renderer_slot)
         return;
     assert(renderer->view_count == 0);
     ray_scene_destroy(&renderer->ray_scene);
+    live_scene_finish(&renderer->live_scene);
     gi_finish(&renderer->gi);
     resident_destroy(&renderer->resident);
     gpu_destroy(&renderer->gpu);
@@ -100,9 +102,12 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
         if (!resident)
             return false;
     }
-    for (uint32_t i = 0; i < renderer->view_count; i++)
+    for (uint32_t i = 0; i < renderer->view_count; i++) {
         view_release_cascades(renderer->views[i]);
+        live_reference_finish(&renderer->views[i]->reference);
+    }
     ray_scene_destroy(&renderer->ray_scene);
+    live_scene_finish(&renderer->live_scene);
     gi_release_all(&renderer->gi);
     resident_destroy(&renderer->resident);
     renderer->resident = resident;
@@ -247,10 +252,53 @@ static bool params_are_valid(const struct frame_params *params, struct error *ou
     return isfinite(camera->fov_y_rad) || error_set(out_error, "the field of view is not finite");
 }
 
+static bool shows_reference(const struct frame_params *params)
+{
+    return params->settings.gi_method == GI_METHOD_REFERENCE &&
+           (params->debug_view == DEBUG_VIEW_FINAL || params->debug_view == DEBUG_VIEW_DIRECT);
+}
+
+// Keeps the view's reference in step, if it has one, and takes its picture into the frame; until
+// there is one, the frame is drawn by direct light. Tells what to do: RENDER_DRAWN is to draw.
+static enum render_result take_reference(struct renderer *renderer, struct frame *frame, bool same)
+{
+    struct view *view = frame->view;
+    const struct frame_params *params = frame->params;
+    const struct render_settings *settings = &params->settings;
+    if (!shows_reference(params)) {
+        live_reference_finish(&view->reference);
+        return RENDER_DRAWN;
+    }
+    const struct live_params wanted = {
+        .scene = renderer->scene,
+        .scene_number = renderer->scene_number,
+        .camera = params->camera,
+        .width = params->width,
+        .height = params->height,
+        .max_bounces = settings->bounces ? settings->bounces : REFERENCE_UNLIMITED,
+        .all_blinn_phong = settings->shading_model == SHADING_MODEL_BLINN_PHONG,
+        .direct_only = params->debug_view == DEBUG_VIEW_DIRECT,
+    };
+    struct error error = {""};
+    enum live_state state =
+        live_reference_update(&view->reference, &renderer->live_scene, &wanted, &error);
+    if (error.message[0])
+        log_write(LOG_ERROR, "reference_failed reason=\"%s\"", error.message);
+    if (same && state == LIVE_FINISHED)
+        return RENDER_UNCHANGED;
+    if (same && state != LIVE_NEW)
+        return RENDER_PENDING;
+    if (view->reference.shown_samples > 0)
+        frame->reference_picture = view->reference.rgba;
+    return RENDER_DRAWN;
+}
+
 // How far the frame that has just been drawn has come: the light in voxels, then the pictures with
 // turned cones that were averaged.
 static float view_convergence(const struct frame *frame)
 {
+    if (shows_reference(frame->params))
+        return live_reference_convergence(&frame->view->reference);
     if (!frame->volume)
         return 1.0f;
     float light = voxel_light_convergence(frame->volume);
@@ -279,8 +327,6 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
                 memcmp(&view->last_revisions, &revisions, sizeof(revisions)) == 0;
     if (same && view->last_convergence >= 1.0f)
         return RENDER_UNCHANGED;
-    if (!resident_update(resident, out_error))
-        return RENDER_FAILED;
 
     struct frame frame = {
         .gpu = renderer->gpu,
@@ -288,8 +334,14 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .view = view,
         .params = params,
         .quality = &quality_levels[params->quality],
-        .visibility_changed = !same_scene || !same_surfaces(view, params, &revisions),
+        .visibility_changed =
+            !same_scene || view->surfaces_stale || !same_surfaces(view, params, &revisions),
     };
+    enum render_result result = take_reference(renderer, &frame, same);
+    if (result != RENDER_DRAWN)
+        return result;
+    if (!resident_update(resident, out_error))
+        return RENDER_FAILED;
     effects_plan(&frame.plan, resident, params);
     view->last_plan = frame.plan; // reasons for skipping passes may point there
     if (!draw_frame(renderer, &frame, out_error)) {
@@ -309,6 +361,13 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .output = params->output,
         .convergence = view_convergence(&frame),
     };
+    if (frame.reference_picture) {
+        const struct live_reference *live = &view->reference;
+        slot->result.reference_samples = live->shown_samples;
+        slot->result.reference_noise =
+            isfinite(live->progress.noise) ? (float)live->progress.noise : 0.0f;
+    }
+    view->surfaces_stale = frame.reference_picture != NULL;
     view->last_convergence = slot->result.convergence;
     slot->volume_serial = view->volume_serial;
     slot->generation = frame.volume && frame.light_work.trace ? frame.volume->light.generation : 0;

@@ -84,6 +84,7 @@ struct frame_params {
 enum render_result {
     RENDER_DRAWN,     // pixels will come by renderer_view_collect()
     RENDER_UNCHANGED, // nothing has changed and the picture has converged: nothing ran
+    RENDER_PENDING,   // nothing ran, since a reference is being traced: ask again in a while
     RENDER_BUSY,      // all RENDERER_FRAMES_IN_RING frames wait to be collected
     RENDER_FAILED,
 };
@@ -105,6 +106,8 @@ struct frame_pixels {
     enum frame_output output;
     const uint8_t *planes[3];
     uint32_t row_pitch_bytes[3];
+    uint32_t reference_samples; // per pixel, if the picture is a reference's; else 0
+    float reference_noise;      // standard error of a pixel over the mean luminance; 0: unknown
     float convergence;    // 0 to 1: how far indirect light and averaging have come; 1 is final
     double frame_time_ms; // wall time from the call of renderer_view_draw to the pixels being here
 };

@@ -52,6 +52,7 @@ void view_destroy(struct view **view_slot)
     *view_slot = NULL;
     if (!view)
         return;
+    live_reference_finish(&view->reference);
     destroy_sized_targets(view);
     view_release_cascades(view);
     draw_list_finish(&view->draws);
@@ -154,7 +155,9 @@ bool view_prepare(struct view *view, const struct resident *resident,
                   const struct frame_params *params, uint32_t effect_bits, enum gather_mode gather)
 {
     const struct quality_level *quality = &quality_levels[params->quality];
-    float scale = quality->resolution_scale;
+    // A reference has as many samples per pixel as it likes.
+    bool by_reference = params->settings.gi_method == GI_METHOD_REFERENCE;
+    float scale = by_reference ? 1.0f : quality->resolution_scale;
     // The largest views are not supersampled beyond what GPU memory is planned for.
     if ((float)params->width * scale * (float)params->height * scale >
         (float)VIEW_MAX_WIDTH * VIEW_MAX_HEIGHT)

@@ -7,6 +7,7 @@
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu/timer.h"
+#include "renderer/reference/live.h"
 #include "renderer/resident/resident.h"
 
 // Behind the pixels in a ring buffer: the exposure that was found automatically.
@@ -70,8 +71,11 @@ struct view {
     struct gpu_buffer
         *glossy_tiles; // arguments and numbers of tiles that reflections are traced in
 
+    struct live_reference reference;
+
     // What the newest drawn frame was made from.
     bool drawn;
+    bool surfaces_stale; // ids, depth and G-buffer are of an earlier frame
     struct frame_params last_params;
     struct scene_revisions last_revisions;
     uint64_t last_scene;

@@ -1,6 +1,11 @@
 // Frames that are waited for: one, the next of a moving camera, or as many as a picture needs.
 #include "server/cli.h"
 
+#include <unistd.h>
+
+// Between looks at a reference that is being traced.
+#define PENDING_US 10000
+
 bool cli_render_next_frame(struct renderer *renderer, struct view *view,
                            const struct frame_params *params, struct frame_pixels *out_pixels,
                            struct error *out_error)
@@ -29,6 +34,10 @@ static enum render_result render_one_more(struct cli_still *still, struct error 
 {
     enum render_result result =
         renderer_view_draw(still->renderer, still->view, still->params, out_error);
+    while (result == RENDER_PENDING) {
+        usleep(PENDING_US);
+        result = renderer_view_draw(still->renderer, still->view, still->params, out_error);
+    }
     if (result != RENDER_DRAWN)
         return result;
     if (still->frame_count > 0)

@@ -23,8 +23,9 @@ struct render_client {
     uint64_t camera_revision;
     uint64_t edit_id;
     uint64_t frame_count;
-    bool dirty;              // something may have changed since the newest drawn frame
-    uint64_t dirty_since_us; // 0 when not dirty
+    bool dirty;                // something may have changed since the newest drawn frame
+    uint64_t dirty_since_us;   // 0 when not dirty
+    uint64_t pending_until_us; // a reference has nothing new to show before
     struct quality_controller quality;
     enum quality drawn_row;     // of the newest frame
     enum quality drawn_wanted;  // that was wanted when it was drawn

@@ -8,6 +8,9 @@
 
 #define STATISTICS_INTERVAL_US 500000u
 
+// How long a reference that has nothing new is left alone.
+#define PENDING_US 30000u
+
 // While one client's picture moves, frames that only make others' better take at most this share.
 #define REFINE_SHARE 8u
 
@@ -65,6 +68,7 @@ void render_mark_dirty(struct render_thread *thread, struct render_client *clien
         if (!each->client_id || (client && each != client))
             continue;
         each->dirty = true;
+        each->pending_until_us = 0;
         if (each->dirty_since_us == 0)
             each->dirty_since_us = now;
     }
@@ -98,6 +102,7 @@ static bool wants_draw(struct render_thread *thread, uint32_t slot, uint64_t now
 {
     const struct render_client *client = &thread->clients[slot];
     return client->client_id && thread->scene && !client->drawing && !client->options.paused &&
+           now >= client->pending_until_us &&
            (client->dirty || choose_row(client, now) != client->drawn_row) &&
            frame_stream_wants_frame(thread->params.stream, slot);
 }
@@ -131,7 +136,9 @@ uint64_t render_next_draw_us(struct render_thread *thread)
         struct quality_request request = request_of(client);
         uint64_t change = quality_controller_next_us(&client->quality, &request, now);
         // Time has passed since it was asked last: stillness may have come just now.
-        if (wants_draw(thread, slot, now))
+        if (client->pending_until_us > now)
+            change = client->pending_until_us;
+        else if (wants_draw(thread, slot, now))
             change = is_urgent(client, now) || refine_us < now ? now : refine_us;
         next = change < next ? change : next;
     }
@@ -208,6 +215,9 @@ static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
         client->dirty_since_us = 0;
         if (client->statistics_due)
             render_send_statistics(thread, slot);
+    } else if (result == RENDER_PENDING) {
+        client->dirty_since_us = 0;
+        client->pending_until_us = clock_now_us() + PENDING_US;
     } else if (result == RENDER_DRAWN) {
         fill_header(thread, client, start);
         client->dirty = true; // until the renderer says that there is nothing more to draw
@@ -268,6 +278,8 @@ static void take_convergence(struct render_client *client, const struct frame_pi
     client->convergence =
         quality_convergence(client->drawn_row, client->drawn_wanted, pixels->convergence);
     client->header.convergence = client->convergence;
+    client->header.reference_samples = pixels->reference_samples;
+    client->header.reference_noise = pixels->reference_noise;
     if (client->convergence >= 1.0f)
         client->header.flags |= FRAME_CONVERGED;
     struct quality_request request = request_of(client);

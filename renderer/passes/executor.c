@@ -10,8 +10,8 @@ const struct pass *const all_passes[PASS_COUNT] = {
     &visibility_pass,        &gbuffer_pass,      &shadow_map_pass,       &voxelize_pass,
     &voxel_relight_pass,     &voxel_filter_pass, &irradiance_cache_pass, &light_tiles_pass,
     &environment_pass,       &direct_light_pass, &emission_pass,         &indirect_diffuse_pass,
-    &indirect_specular_pass, &transparency_pass, &debug_view_pass,       &exposure_pass,
-    &tonemap_pass,           &readback_pass,
+    &indirect_specular_pass, &transparency_pass, &reference_pass,        &debug_view_pass,
+    &exposure_pass,          &tonemap_pass,      &readback_pass,
 };
 
 static const char *const resource_names[RESOURCE_COUNT] = {
@@ -42,7 +42,10 @@ bool passes_execute(struct frame *frame, struct error *out_error)
     gpu_timer_begin_frame(view->timer);
     for (uint32_t i = 0; i < PASS_COUNT; i++) {
         const struct pass *pass = all_passes[i];
-        const char *reason = pass->skip_reason ? pass->skip_reason(frame) : NULL;
+        const char *reason = frame->reference_picture && !pass->shows_reference
+                                 ? "the reference's picture is shown"
+                             : pass->skip_reason ? pass->skip_reason(frame)
+                                                 : NULL;
         view->pass_skip_reasons[i] = reason;
         if (reason)
             continue;

@@ -33,4 +33,5 @@ const struct pass exposure_pass = {
     .uses = {{RESOURCE_RADIANCE, ACCESS_READ}, {RESOURCE_EXPOSURE, ACCESS_WRITE}},
     .skip_reason = exposure_skip_reason,
     .run = exposure_run,
+    .shows_reference = true,
 };

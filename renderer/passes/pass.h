@@ -52,9 +52,10 @@ struct frame {
     struct voxel_volume *volume; // NULL where no effect needs voxels
     struct voxel_light_work light_work;
     enum gather_mode gather;
-    bool gather_now;       // pixels' cones are due; else what they found is still good
-    uint32_t still_frames; // pictures to average
-    uint32_t still_count;  // this one and those before it
+    bool gather_now;                // pixels' cones are due; else what they found is still good
+    uint32_t still_frames;          // pictures to average
+    uint32_t still_count;           // this one and those before it
+    const float *reference_picture; // 4 floats a pixel, shown instead; NULL for none
 };
 
 static inline bool frame_has(const struct frame *frame, enum effect effect)
@@ -89,6 +90,8 @@ struct pass {
     // NULL if the pass must run, else the reason in words why it need not.
     const char *(*skip_reason)(const struct frame *frame);
 
+    bool shows_reference; // runs where a reference's picture is shown, too
+
     // Binds, dispatches, returns; allocates nothing. False with a message if a shader fails.
     bool (*run)(struct frame *frame, const struct pass *pass, struct error *out_error);
 };
@@ -96,10 +99,10 @@ struct pass {
 extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, voxelize_pass,
     voxel_relight_pass, voxel_filter_pass, irradiance_cache_pass, light_tiles_pass,
     environment_pass, direct_light_pass, emission_pass, indirect_diffuse_pass,
-    indirect_specular_pass, transparency_pass, debug_view_pass, exposure_pass, tonemap_pass,
-    readback_pass;
+    indirect_specular_pass, transparency_pass, reference_pass, debug_view_pass, exposure_pass,
+    tonemap_pass, readback_pass;
 
-#define PASS_COUNT 18
+#define PASS_COUNT 19
 extern const struct pass *const all_passes[PASS_COUNT];
 
 // Runs the passes that are needed, in order, timing each. False with a message if one fails.

@@ -24,4 +24,5 @@ const struct pass readback_pass = {
     .use_count = 2,
     .uses = {{RESOURCE_OUTPUT, ACCESS_READ}, {RESOURCE_EXPOSURE, ACCESS_READ}},
     .run = readback_run,
+    .shows_reference = true,
 };

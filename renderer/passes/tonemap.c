@@ -28,4 +28,5 @@ const struct pass tonemap_pass = {
              {RESOURCE_EXPOSURE, ACCESS_READ},
              {RESOURCE_OUTPUT, ACCESS_WRITE}},
     .run = tonemap_run,
+    .shows_reference = true,
 };

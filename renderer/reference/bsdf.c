@@ -193,10 +193,11 @@ static float3 sample_visible_normal(const struct bsdf *bsdf, float3 x, float3 y,
     float alpha = bsdf->alpha;
     float3 view =
         normalize3(make3(alpha * dot3(bsdf->view, x), alpha * dot3(bsdf->view, y), bsdf->n_v));
-    float angle = 2.0f * PI * u[0];
+    float across, along;
+    turn1(u[0], &across, &along);
     float z = 1.0f - u[1] * (1.0f + view[2]);
     float sine = sqrtf(clamp01(1.0f - z * z));
-    float3 half = make3(sine * cosf(angle), sine * sinf(angle), z) + view;
+    float3 half = make3(sine * across, sine * along, z) + view;
     return normalize3(make3(half[0] * alpha, half[1] * alpha, max1(half[2], 1e-7f)));
 }
 
@@ -206,8 +207,9 @@ static float3 sample_half(const struct bsdf *bsdf, const float u[2])
     basis3(bsdf->normal, &x, &y);
     if (bsdf->exponent > 0.0f) {
         float cosine = powf(1.0f - u[1], 1.0f / (bsdf->exponent + 1.0f));
-        float sine = sqrtf(clamp01(1.0f - cosine * cosine)), angle = 2.0f * PI * u[0];
-        local = make3(sine * cosf(angle), sine * sinf(angle), cosine);
+        float sine = sqrtf(clamp01(1.0f - cosine * cosine)), across, along;
+        turn1(u[0], &across, &along);
+        local = make3(sine * across, sine * along, cosine);
     } else {
         local = sample_visible_normal(bsdf, x, y, u);
     }
@@ -221,9 +223,10 @@ bool bsdf_sample(const struct bsdf *bsdf, float choice, const float u[2], float3
     if (choice < bsdf->p_diffuse) {
         float3 x, y;
         basis3(bsdf->normal, &x, &y);
-        float radius = sqrtf(u[0]), angle = 2.0f * PI * u[1];
-        *out_direction = x * (radius * cosf(angle)) + y * (radius * sinf(angle)) +
-                         bsdf->normal * sqrtf(1.0f - u[0]);
+        float radius = sqrtf(u[0]), across, along;
+        turn1(u[1], &across, &along);
+        *out_direction =
+            x * (radius * across) + y * (radius * along) + bsdf->normal * sqrtf(1.0f - u[0]);
     } else {
         float3 half = sample_half(bsdf, u);
         float v_h = dot3(bsdf->view, half);

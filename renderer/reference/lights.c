@@ -274,15 +274,14 @@ static void spread_over_sphere(const struct punctual *light, const float u[2],
 // The first of `count` cumulative shares, `stride` floats apart, beyond `u`.
 static uint32_t find_share(const float *ends, size_t stride, uint32_t count, float u)
 {
-    uint32_t low = 0, high = count - 1;
-    while (low < high) {
-        uint32_t middle = (low + high) / 2;
-        if (ends[middle * stride] > u)
-            high = middle;
-        else
-            low = middle + 1;
+    // Halves without branches, whose ways nobody could foretell.
+    uint32_t first = 0, left = count;
+    while (left > 1) {
+        uint32_t half = left / 2;
+        first += ends[(first + half - 1) * stride] > u ? 0 : half;
+        left -= half;
     }
-    return low;
+    return first;
 }
 
 // Weight by which a light is chosen: what it would give, roughly.

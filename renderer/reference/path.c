@@ -55,11 +55,11 @@ struct path {
     float3 origin;
     float3 direction; // unit
     float3 throughput;
-    float3 from;    // the vertex that the ray left
-    float density;  // of `direction`, per steradian
-    bool scattered; // there is such a vertex
-    bool spread;    // and some was no mirror nor lens
-    float caustic_alpha;
+    float3 from;          // the vertex that the ray left
+    float density;        // of `direction`, per steradian
+    bool scattered;       // there is such a vertex
+    bool spread;          // and some was no mirror nor lens
+    uint32_t number;      // of the sample, from 1
     uint32_t vertex;      // number of scattering events so far
     uint32_t reflections; // among them
     const struct material *media[MAX_MEDIA];
@@ -85,7 +85,6 @@ void path_setup_init(struct path_setup *setup, const struct reference_params *pa
         .aims_at_environment =
             by_light && shines && (by_light_alone || environment_is_uneven(snapshot->environment)),
         .finds_light = !by_light_alone,
-        .has_points = lights_have_punctual(snapshot->lights),
         .rays_find = !by_light_alone && (emits || shines),
     };
     for (int axis = 0; axis < 3; axis++)
@@ -290,9 +289,9 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
         get_2d(path, USE_LAMP_POINT, u);
         struct bsdf wide;
         const struct bsdf *lobes = bsdf;
-        if (path->spread && bsdf->alpha < path->caustic_alpha) {
+        if (path->spread && bsdf->alpha < CAUSTIC_ALPHA) {
             wide = *bsdf;
-            bsdf_widen(&wide, path->caustic_alpha);
+            bsdf_widen(&wide, CAUSTIC_ALPHA * powf((float)path->number, CAUSTIC_POWER));
             lobes = &wide;
         }
         if (lights_sample_punctual(snapshot->lights, surface->position, surface->normal,
@@ -444,8 +443,8 @@ void path_add_sample(const struct path_setup *setup, struct path_rays *rays, uin
         .layers = layers,
         .throughput = splat3(1.0f),
         .origin = setup->eye,
-        .caustic_alpha =
-            setup->has_points ? CAUSTIC_ALPHA * powf((float)(sample + 1), CAUSTIC_POWER) : 0.0f};
+        .number = sample + 1,
+    };
     // Even and odd samples are sequences of their own, whose difference tells the noise.
     sampler_init(&path.sampler, setup->seed, y * setup->width + x, sample & 1u, sample >> 1);
     float at[2] = {0.5f, 0.5f}, ray[3];

@@ -31,7 +31,6 @@ struct path_setup {
     bool pixel_center;
     bool aims_at_emitters, aims_at_environment;
     bool finds_light; // rays that follow the surface count, too
-    bool has_points;  // there are punctual lights
     bool rays_find;   // and there is light that they could find
 };
 

@@ -340,6 +340,14 @@ bool reference_render(struct reference *reference, uint32_t samples)
     return reference_wait(reference, INFINITY);
 }
 
+uint32_t reference_get_samples(struct reference *reference)
+{
+    pthread_mutex_lock(&reference->mutex);
+    uint32_t samples = least_samples(reference);
+    pthread_mutex_unlock(&reference->mutex);
+    return samples;
+}
+
 void reference_get_progress(struct reference *reference, struct reference_progress *out_progress)
 {
     const struct path_setup *setup = &reference->setup;

@@ -93,6 +93,9 @@ void reference_stop(struct reference *reference);
 // Adds samples and waits for them. False if stopped by another thread.
 bool reference_render(struct reference *reference, uint32_t samples);
 
+// Samples that every pixel has. Cheap.
+uint32_t reference_get_samples(struct reference *reference);
+
 struct reference_progress {
     uint32_t samples;      // every pixel has at least so many
     uint64_t nearest_rays; // cast so far: along paths,

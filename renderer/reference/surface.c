@@ -104,6 +104,19 @@ static void fill_material(struct surface *surface, const struct corners *corners
         surface->emission = splat3(0.0f);
 }
 
+// Texture coordinates of both sets. The texels are on their way into the cache then, while the
+// geometry is worked out.
+static void locate_textures(const struct material *material, const struct corners *corners,
+                            float out_uv[4])
+{
+    float3 mean = INTERPOLATE(corners, uv[0]);
+    memcpy(out_uv, &mean, 4 * sizeof(float));
+    for (uint32_t slots = material->texture_mask; slots != 0; slots &= slots - 1) {
+        const struct texture *texture = &material->textures[__builtin_ctz(slots)];
+        texture_prefetch(texture, out_uv + (size_t)2 * texture->uv_set);
+    }
+}
+
 bool surface_init(struct surface *surface, const struct snapshot *snapshot,
                   const struct ray_crossing *crossing, float3 direction)
 {
@@ -113,6 +126,11 @@ bool surface_init(struct surface *surface, const struct snapshot *snapshot,
     struct corners corners = {.weights = {1.0f - u - v, u, v}};
     for (int corner = 0; corner < 3; corner++)
         corners.vertices[corner] = &snapshot->scene->vertices[indices[corner]];
+    const struct material *material = snapshot_material(snapshot, crossing->primitive);
+    surface->material = material;
+    float uv[4] = {0};
+    if (material->texture_mask)
+        locate_textures(material, &corners, uv);
     float3 first = load_lanes(corners.vertices[0]->position);
     float3 edges[2] = {load_lanes(corners.vertices[1]->position) - first,
                        load_lanes(corners.vertices[2]->position) - first};
@@ -122,15 +140,8 @@ bool surface_init(struct surface *surface, const struct snapshot *snapshot,
     float3 shading = instance_normal(instance, INTERPOLATE(&corners, normal));
     if (!normalize_any(&shading))
         shading = face;
-    const struct material *material = snapshot_material(snapshot, crossing->primitive);
-    surface->material = material;
-    float uv[4] = {0};
-    if (material->texture_mask) {
-        float3 mean = INTERPOLATE(&corners, uv[0]);
-        memcpy(uv, &mean, sizeof(uv));
-        if (material->texture_mask & 1u << SCENE_TEXTURE_NORMAL)
-            shading = mapped_normal(surface, instance, &corners, uv, shading);
-    }
+    if (material->texture_mask & 1u << SCENE_TEXTURE_NORMAL)
+        shading = mapped_normal(surface, instance, &corners, uv, shading);
     surface->is_front = dot3(face, direction) <= 0.0f;
     surface->is_back = !surface->is_front && !material->double_sided;
     surface->position = instance_point(instance, first + edges[0] * u + edges[1] * v);

@@ -57,28 +57,60 @@ static float3 texel_at(const struct texture *texture, uint32_t column, uint32_t 
     return rgb * (1.0f / 255.0f);
 }
 
-float3 texture_get(const struct texture *texture, const float uv[2])
+// Where a look-up falls: its first texel, and how far beyond it.
+struct place {
+    float left, top;
+    float across, down;
+};
+
+// False for coordinates beyond all reason.
+static inline bool find_place(const struct texture *texture, const float uv[2],
+                              struct place *out_place)
 {
-    const struct image *image = texture->image;
     float center = texture->nearest ? 0.0f : 0.5f;
     float u = texture->row_u[0] * uv[0] + texture->row_u[1] * uv[1] + texture->row_u[2];
     float v = texture->row_v[0] * uv[0] + texture->row_v[1] * uv[1] + texture->row_v[2];
-    float x = u * (float)image->width - center, y = v * (float)image->height - center;
+    float x = u * (float)texture->image->width - center;
+    float y = v * (float)texture->image->height - center;
     if (!(fabsf(x) < 1e15f && fabsf(y) < 1e15f))
+        return false;
+    out_place->left = floorf(x);
+    out_place->top = floorf(y);
+    out_place->across = x - out_place->left;
+    out_place->down = y - out_place->top;
+    return true;
+}
+
+void texture_prefetch(const struct texture *texture, const float uv[2])
+{
+    const struct image *image = texture->image;
+    struct place place;
+    if (!find_place(texture, uv, &place))
+        return;
+    uint32_t column = wrap_index((int64_t)place.left, image->width, texture->wrap_u);
+    uint32_t row = wrap_index((int64_t)place.top, image->height, texture->wrap_v);
+    uint32_t next_row = wrap_index((int64_t)place.top + 1, image->height, texture->wrap_v);
+    __builtin_prefetch(image->rgba + ((size_t)row * image->width + column) * 4);
+    __builtin_prefetch(image->rgba + ((size_t)next_row * image->width + column) * 4);
+}
+
+float3 texture_get(const struct texture *texture, const float uv[2])
+{
+    const struct image *image = texture->image;
+    struct place place;
+    if (!find_place(texture, uv, &place))
         return splat3(1.0f);
-    float left = floorf(x), top = floorf(y);
-    uint32_t column = wrap_index((int64_t)left, image->width, texture->wrap_u);
-    uint32_t row = wrap_index((int64_t)top, image->height, texture->wrap_v);
+    uint32_t column = wrap_index((int64_t)place.left, image->width, texture->wrap_u);
+    uint32_t row = wrap_index((int64_t)place.top, image->height, texture->wrap_v);
     if (texture->nearest)
         return texel_at(texture, column, row);
-    uint32_t next_column = wrap_index((int64_t)left + 1, image->width, texture->wrap_u);
-    uint32_t next_row = wrap_index((int64_t)top + 1, image->height, texture->wrap_v);
-    float across = x - left, down = y - top;
-    float3 upper = texel_at(texture, column, row) * (1.0f - across) +
-                   texel_at(texture, next_column, row) * across;
-    float3 lower = texel_at(texture, column, next_row) * (1.0f - across) +
-                   texel_at(texture, next_column, next_row) * across;
-    return upper * (1.0f - down) + lower * down;
+    uint32_t next_column = wrap_index((int64_t)place.left + 1, image->width, texture->wrap_u);
+    uint32_t next_row = wrap_index((int64_t)place.top + 1, image->height, texture->wrap_v);
+    float3 upper = texel_at(texture, column, row) * (1.0f - place.across) +
+                   texel_at(texture, next_column, row) * place.across;
+    float3 lower = texel_at(texture, column, next_row) * (1.0f - place.across) +
+                   texel_at(texture, next_column, next_row) * place.across;
+    return upper * (1.0f - place.down) + lower * place.down;
 }
 
 float3 texture_mean(const struct texture *texture)

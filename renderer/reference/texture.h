@@ -20,6 +20,10 @@ void texture_init(struct texture *texture, const struct scene *scene,
 // Four linear values 0..1; bilinear, of decoded texels as a GPU does it. `uv` is of the vertices.
 float3 texture_get(const struct texture *texture, const float uv[2]);
 
+// Fetches the texels that texture_get() will want into the cache: those of several textures at once
+// take no longer than those of one.
+void texture_prefetch(const struct texture *texture, const float uv[2]);
+
 // The mean over all texels.
 float3 texture_mean(const struct texture *texture);
 

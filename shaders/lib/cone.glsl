@@ -54,6 +54,15 @@ float inside_level(uint level, vec3 position)
     return min(rim.x, min(rim.y, rim.z)) - (0.5 + FACE_INSET) * float(voxels.levels[level].index.z);
 }
 
+// Edge in m of the finest voxels that hold a place; those of the coarsest level beyond them all.
+float finest_voxel(vec3 position)
+{
+    float edge = voxels.levels[0].size.x;
+    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, position) < 0.0; level++)
+        edge = voxels.levels[level + 1u].size.x;
+    return edge;
+}
+
 // Filtered light and optical depth across a voxel of a level, for a ray of the given direction.
 vec4 sample_level(uint level, vec3 position, vec3 direction)
 {

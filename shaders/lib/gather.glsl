@@ -39,9 +39,7 @@ gather_cones begin_gather(vec3 position, vec3 normal, vec2 turn)
     gather_cones g;
     mat3 axes = frame_about(normal);
     g.axes = mat3(axes[0] * turn.x + axes[1] * turn.y, axes[1] * turn.x - axes[0] * turn.y, normal);
-    float voxel = voxels.levels[0].size.x;
-    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, position) < 0.0; level++)
-        voxel = voxels.levels[level + 1u].size.x;
+    float voxel = finest_voxel(position);
     g.c.origin = position + normal * (MARCH_OF_SET.y * voxel);
     g.c.tangent = MARCH_OF_SET.w;
     g.c.step = MARCH_OF_SET.x;

@@ -14,9 +14,7 @@ float lobe_tangent(float roughness)
 vec3 trace_gloss(vec3 position_world, vec3 normal, vec3 direction, float roughness)
 {
     vec3 origin = voxel_position(position_world);
-    float voxel = voxels.levels[0].size.x;
-    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, origin) < 0.0; level++)
-        voxel = voxels.levels[level + 1u].size.x;
+    float voxel = finest_voxel(origin);
     cone c;
     c.origin = origin + normal * (voxels.pixel_march.y * voxel);
     c.direction = direction;

@@ -39,9 +39,7 @@ float soft_visibility(float hard, vec3 position, vec3 normal, vec3 to_light, flo
                       float radius_m)
 {
     vec3 origin = voxel_position(position);
-    float voxel = voxels.levels[0].size.x;
-    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, origin) < 0.0; level++)
-        voxel = voxels.levels[level + 1u].size.x;
+    float voxel = finest_voxel(origin);
     cone c;
     c.origin = origin + normal * (voxels.pixel_march.y * voxel);
     c.direction = to_light;

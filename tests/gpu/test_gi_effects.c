@@ -358,6 +358,9 @@ static void check_planned_is_forced(struct gi_report *report, const char *name,
     struct frame_params params = gi_params(64, 36, method);
     params.output = FRAME_OUTPUT_RGBA8;
     params.settings.soft_shadows = true;
+    // What is left out does not depend on how fine voxels are; the time of this test does.
+    params.settings.voxel_resolution = VOXEL_RESOLUTION_64;
+    params.settings.clip_levels = 2;
     gi_scene_camera(scene, &params.camera);
     struct test_picture planned = gi_draw(scene, &params);
     params.settings.force_all_effects = true;

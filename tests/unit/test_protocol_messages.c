@@ -228,6 +228,8 @@ static void frame_headers_keep_every_field(void **state)
         .send_wait_us = 12,
         .draw_at_us = 13,
         .sent_at_us = 14,
+        .reference_samples = 15,
+        .reference_noise = 2.0f,
     };
     uint8_t bytes[FRAME_HEADER_BYTES + 5];
     memset(bytes, 0xaa, sizeof(bytes));
@@ -239,7 +241,8 @@ static void frame_headers_keep_every_field(void **state)
     assert_int_equal(bytes[52], 3);
     assert_int_equal(bytes[76], 12);
     assert_int_equal(bytes[88], 14);
-    assert_int_equal(bytes[103], 0);
+    assert_int_equal(bytes[96], 15);
+    assert_int_equal(bytes[103], 0x40);
     struct frame_header back;
     size_t offset = 0;
     assert_true(frame_header_decode(bytes, sizeof(bytes), &back, &offset));

@@ -58,6 +58,8 @@ export function decodeHeader(data) {
     quality: view.getUint8(52),
     convergence: view.getFloat32(56, true),
     sentAtUs: u64(88),
+    referenceSamples: view.getUint32(96, true),
+    referenceNoise: view.getFloat32(100, true),
     drawAtUs: u64(80),
   };
 }

@@ -21,6 +21,8 @@
  * @property {number} sendWaitUs
  * @property {number} drawAtUs
  * @property {number} sentAtUs
+ * @property {number} referenceSamples per pixel, of a picture by the method reference; else 0
+ * @property {number} referenceNoise standard error of a pixel over the mean luminance; 0: unknown
  */
 
 const MAGIC = 0x31465856; // VXF1
@@ -57,6 +59,8 @@ export function parseFrameHeader(message) {
     sendWaitUs: view.getUint32(76, true),
     drawAtUs: u64(80),
     sentAtUs: u64(88),
+    referenceSamples: view.getUint32(96, true),
+    referenceNoise: view.getFloat32(100, true),
   };
   const whole =
     header.headerBytes >= KNOWN_BYTES &&

@@ -2,6 +2,9 @@
 
 const needsMethod = (/** @type {Values} */ { gi_method }) => (gi_method === 'none' ? 'needs a method' : '');
 
+const needsVoxels = (/** @type {Values} */ values) =>
+  needsMethod(values) || (values.gi_method === 'reference' ? 'voxels only' : '');
+
 const onlyFor = (/** @type {string} */ method) => (/** @type {Values} */ values) =>
   needsMethod(values) || (values.gi_method === method ? '' : `${method} only`);
 
@@ -11,21 +14,21 @@ const onlyFor = (/** @type {string} */ method) => (/** @type {Values} */ values)
  */
 const RULES = {
   gi_method: () => '',
-  voxel_resolution: needsMethod,
-  voxel_directions: needsMethod,
+  voxel_resolution: needsVoxels,
+  voxel_directions: needsVoxels,
   clip_levels: onlyFor('clipmap'),
   levels_per_frame: onlyFor('clipmap'),
   voxelize_every_frame: onlyFor('grid'),
-  cone_set: needsMethod,
-  cone_step: needsMethod,
-  gather_mode: needsMethod,
+  cone_set: needsVoxels,
+  cone_step: needsVoxels,
+  gather_mode: needsVoxels,
   bounces: needsMethod,
-  indirect_intensity: needsMethod,
-  ambient_occlusion: needsMethod,
-  soft_shadows: needsMethod,
-  indirect_specular: needsMethod,
-  refraction: needsMethod,
-  environment_light: needsMethod,
+  indirect_intensity: needsVoxels,
+  ambient_occlusion: needsVoxels,
+  soft_shadows: needsVoxels,
+  indirect_specular: needsVoxels,
+  refraction: needsVoxels,
+  environment_light: needsVoxels,
 };
 
 /** Whether a setting is one of global illumination. @param {string} name */

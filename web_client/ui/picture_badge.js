@@ -1,6 +1,12 @@
 import { element } from './element.js';
 
-/** Over the picture: the quality that it was drawn with, and how far it has come. */
+/** Samples and noise of a reference's picture, as in "64 samples, noise 3.1 %". */
+function describeReference(/** @type {number} */ samples, /** @type {number} */ noise) {
+  const count = `${samples} sample${samples === 1 ? '' : 's'}`;
+  return noise > 0 ? `${count}, noise ${(100 * noise).toPrecision(2)} %` : count;
+}
+
+/** Over the picture: what it was drawn with, and how far it has come. */
 export class PictureBadge {
   /** @param {HTMLElement} root */
   constructor(root) {
@@ -12,10 +18,11 @@ export class PictureBadge {
   }
 
   /** @param {import('../net/frame_header.js').FrameHeader} header @param {string} rowName */
-  show({ converged, convergence }, rowName) {
+  show({ converged, convergence, referenceSamples, referenceNoise }, rowName) {
     this.root.hidden = false;
     this.root.classList.toggle('done', converged);
-    this.row.textContent = rowName;
+    this.row.textContent =
+      referenceSamples > 0 ? describeReference(referenceSamples, referenceNoise) : rowName;
     this.share.textContent = converged ? 'done' : `${Math.floor(100 * convergence)} %`;
     this.bar.value = convergence;
   }

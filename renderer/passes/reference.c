@@ -1,0 +1,27 @@
+// The reference's newest picture, uploaded in place of all that the real-time passes would make.
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *reference_skip_reason(const struct frame *frame)
+{
+    return frame->reference_picture ? NULL : "no reference is shown";
+}
+
+static bool reference_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    (void)pass;
+    (void)out_error;
+    gpu_buffer_write(frame->view->radiance, 0,
+                     (size_t)frame->width * frame->height * 4 * sizeof(float),
+                     frame->reference_picture);
+    return true;
+}
+
+const struct pass reference_pass = {
+    .name = "reference",
+    .use_count = 1,
+    .uses = {{RESOURCE_RADIANCE, ACCESS_WRITE}},
+    .skip_reason = reference_skip_reason,
+    .run = reference_run,
+    .shows_reference = true,
+};

@@ -1,0 +1,141 @@
+#include "renderer/reference/live.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+// Camera and scene rest when they have been the same for so long.
+#define REST_MS 150.0
+// A new picture is fetched when it has this share more of samples, and no sooner than this after
+// the last: drawing and encoding take their time from tracing.
+#define SAMPLES_STEP 1.2
+#define INTERVAL_MS  100.0
+// Good enough, or as far as it goes.
+#define WANTED_NOISE   0.01
+#define WANTED_SAMPLES 16384u
+
+static double now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+void live_scene_finish(struct live_scene *scene)
+{
+    if (scene->snapshot)
+        snapshot_release(&scene->snapshot);
+    *scene = (struct live_scene){0};
+}
+
+void live_reference_finish(struct live_reference *live)
+{
+    if (live->reference)
+        reference_destroy(&live->reference);
+    free(live->rgba);
+    *live = (struct live_reference){0};
+}
+
+static bool same_revisions(const struct scene_revisions *a, const struct scene_revisions *b)
+{
+    return memcmp(a, b, sizeof(*a)) == 0;
+}
+
+static bool same_params(const struct live_reference *live, const struct live_params *params)
+{
+    const struct live_params *last = &live->params;
+    return last->scene_number == params->scene_number &&
+           memcmp(&last->camera, &params->camera, sizeof(last->camera)) == 0 &&
+           last->width == params->width && last->height == params->height &&
+           last->max_bounces == params->max_bounces &&
+           last->all_blinn_phong == params->all_blinn_phong &&
+           last->direct_only == params->direct_only &&
+           same_revisions(&live->revisions, &params->scene->revisions);
+}
+
+static bool update_snapshot(struct live_scene *scene, const struct live_params *params,
+                            struct error *out_error)
+{
+    if (scene->snapshot && scene->scene_number == params->scene_number &&
+        scene->all_blinn_phong == params->all_blinn_phong &&
+        same_revisions(&scene->revisions, &params->scene->revisions))
+        return true;
+    live_scene_finish(scene);
+    scene->snapshot = snapshot_create(params->scene, params->all_blinn_phong, out_error);
+    scene->scene_number = params->scene_number;
+    scene->revisions = params->scene->revisions;
+    scene->all_blinn_phong = params->all_blinn_phong;
+    return scene->snapshot != NULL;
+}
+
+static bool start(struct live_reference *live, struct live_scene *scene, struct error *out_error)
+{
+    const struct live_params *params = &live->params;
+    size_t bytes = (size_t)params->width * params->height * 4 * sizeof(float);
+    live->rgba = malloc(bytes);
+    if (!live->rgba)
+        return error_set(out_error, "out of memory for a picture of %u x %u", params->width,
+                         params->height);
+    if (!update_snapshot(scene, params, out_error))
+        return false;
+    live->reference = reference_create(
+        &(struct reference_params){.scene = scene->snapshot,
+                                   .camera = params->camera,
+                                   .width = params->width,
+                                   .height = params->height,
+                                   .max_bounces = params->direct_only ? 0 : params->max_bounces,
+                                   .low_priority = true},
+        out_error);
+    if (live->reference)
+        reference_start(live->reference, WANTED_SAMPLES);
+    return live->reference != NULL;
+}
+
+enum live_state live_reference_update(struct live_reference *live, struct live_scene *scene,
+                                      const struct live_params *params, struct error *out_error)
+{
+    double now = now_ms();
+    if (!same_params(live, params)) {
+        live_reference_finish(live);
+        live->params = *params;
+        live->revisions = params->scene->revisions;
+        live->changed_at_ms = now;
+    }
+    if (live->converged)
+        return LIVE_FINISHED;
+    if (!live->reference) {
+        if (now - live->changed_at_ms >= REST_MS && !start(live, scene, out_error)) {
+            free(live->rgba);
+            live->rgba = NULL;
+            live->changed_at_ms = now; // tries again later
+        }
+        return LIVE_WAITING;
+    }
+    uint32_t samples = reference_get_samples(live->reference);
+    enum live_state not_yet = live->shown_samples > 0 ? LIVE_SAME : LIVE_WAITING;
+    if (samples < live->shown_samples * SAMPLES_STEP + 1.0 && samples < WANTED_SAMPLES)
+        return not_yet;
+    if (samples == 0 || (live->shown_samples > 0 && now - live->shown_at_ms < INTERVAL_MS))
+        return not_yet;
+    reference_get_progress(live->reference, &live->progress);
+    reference_get_picture(live->reference, REFERENCE_ALL_LAYERS, live->rgba);
+    live->shown_samples = samples;
+    live->shown_at_ms = now;
+    live->converged = live->progress.noise < WANTED_NOISE || samples >= WANTED_SAMPLES;
+    if (live->converged)
+        reference_stop(live->reference);
+    return LIVE_NEW;
+}
+
+float live_reference_convergence(const struct live_reference *live)
+{
+    if (live->converged)
+        return 1.0f;
+    if (live->shown_samples == 0 || !(live->progress.noise > 0.0))
+        return 0.0f;
+    // Noise falls with the root of the samples.
+    double ratio = WANTED_NOISE / live->progress.noise;
+    double share = fmax(ratio * ratio, (double)live->shown_samples / WANTED_SAMPLES);
+    return (float)fmin(share, 0.99);
+}
