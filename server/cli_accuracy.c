@@ -232,6 +232,8 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
     else if (options->shot.settings.preset != CLI_NO_CHOICE ||
              options->shot.settings.view != CLI_NO_CHOICE)
         wrong = "--preset and --view are up to the ladder; see voxcast accuracy --help";
+    else if (options->shot.settings.gi == GI_METHOD_REFERENCE)
+        wrong = "--gi reference is the truth, and no rung; see voxcast accuracy --help";
     if (truths == 0)
         options->until_noise = DEFAULT_NOISE;
     if (wrong)

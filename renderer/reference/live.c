@@ -22,8 +22,20 @@ static double now_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
 }
 
+static void *build(void *context)
+{
+    struct live_scene *scene = context;
+    struct error ignored;
+    pthread_setschedparam(pthread_self(), SCHED_IDLE, &(struct sched_param){0});
+    bool done = snapshot_build(scene->snapshot, true, &ignored);
+    __atomic_store_n(&scene->built, done ? 1 : -1, __ATOMIC_RELEASE);
+    return NULL;
+}
+
 void live_scene_finish(struct live_scene *scene)
 {
+    if (scene->builds)
+        pthread_join(scene->builder, NULL);
     if (scene->snapshot)
         snapshot_release(&scene->snapshot);
     *scene = (struct live_scene){0};
@@ -54,30 +66,45 @@ static bool same_params(const struct live_reference *live, const struct live_par
            same_revisions(&live->revisions, &params->scene->revisions);
 }
 
-static bool update_snapshot(struct live_scene *scene, const struct live_params *params,
-                            struct error *out_error)
+// Tells whether there is a snapshot of the document as it is; else has one built, as soon as the
+// last builder is done.
+static bool has_snapshot(struct live_scene *scene, const struct live_params *params,
+                         struct error *out_error)
 {
+    if (scene->builds) {
+        if (__atomic_load_n(&scene->built, __ATOMIC_ACQUIRE) == 0)
+            return false;
+        pthread_join(scene->builder, NULL);
+        scene->builds = false;
+        if (scene->built < 0) {
+            live_scene_finish(scene);
+            return error_set(out_error, "out of memory for tracing the scene");
+        }
+    }
     if (scene->snapshot && scene->scene_number == params->scene_number &&
         scene->all_blinn_phong == params->all_blinn_phong &&
         same_revisions(&scene->revisions, &params->scene->revisions))
         return true;
     live_scene_finish(scene);
-    scene->snapshot = snapshot_create(params->scene, params->all_blinn_phong, out_error);
+    scene->snapshot = snapshot_copy(params->scene, params->all_blinn_phong, out_error);
+    if (!scene->snapshot)
+        return false;
     scene->scene_number = params->scene_number;
     scene->revisions = params->scene->revisions;
     scene->all_blinn_phong = params->all_blinn_phong;
-    return scene->snapshot != NULL;
+    scene->builds = pthread_create(&scene->builder, NULL, build, scene) == 0;
+    if (!scene->builds) {
+        live_scene_finish(scene);
+        return error_set(out_error, "no thread for building a snapshot");
+    }
+    return false;
 }
 
+// False as long as there is no snapshot, too.
 static bool start(struct live_reference *live, struct live_scene *scene, struct error *out_error)
 {
     const struct live_params *params = &live->params;
-    size_t bytes = (size_t)params->width * params->height * 4 * sizeof(float);
-    live->rgba = malloc(bytes);
-    if (!live->rgba)
-        return error_set(out_error, "out of memory for a picture of %u x %u", params->width,
-                         params->height);
-    if (!update_snapshot(scene, params, out_error))
+    if (!has_snapshot(scene, params, out_error))
         return false;
     live->reference = reference_create(
         &(struct reference_params){.scene = scene->snapshot,
@@ -87,9 +114,16 @@ static bool start(struct live_reference *live, struct live_scene *scene, struct 
                                    .max_bounces = params->direct_only ? 0 : params->max_bounces,
                                    .low_priority = true},
         out_error);
-    if (live->reference)
-        reference_start(live->reference, WANTED_SAMPLES);
-    return live->reference != NULL;
+    if (!live->reference)
+        return false;
+    live->rgba = malloc((size_t)params->width * params->height * 4 * sizeof(float));
+    if (!live->rgba) {
+        reference_destroy(&live->reference);
+        return error_set(out_error, "out of memory for a picture of %u x %u", params->width,
+                         params->height);
+    }
+    reference_start(live->reference, WANTED_SAMPLES);
+    return true;
 }
 
 enum live_state live_reference_update(struct live_reference *live, struct live_scene *scene,
@@ -105,11 +139,9 @@ enum live_state live_reference_update(struct live_reference *live, struct live_s
     if (live->converged)
         return LIVE_FINISHED;
     if (!live->reference) {
-        if (now - live->changed_at_ms >= REST_MS && !start(live, scene, out_error)) {
-            free(live->rgba);
-            live->rgba = NULL;
+        bool rests = now - live->changed_at_ms >= REST_MS;
+        if (rests && !start(live, scene, out_error) && out_error->message[0])
             live->changed_at_ms = now; // tries again later
-        }
         return LIVE_WAITING;
     }
     uint32_t samples = reference_get_samples(live->reference);

@@ -5,17 +5,24 @@
 #ifndef VOXCAST_RENDERER_REFERENCE_LIVE_H
 #define VOXCAST_RENDERER_REFERENCE_LIVE_H
 
+#include <pthread.h>
+
 #include "renderer/reference/reference.h"
 #include "renderer/scene/scene.h"
 
-// Snapshots of a document, shared by its views; at most one at a time. Zero means none.
+// Snapshots of a document, shared by its views; at most one at a time. They are built by a thread
+// of their own at idle priority. Zero means none.
 struct live_scene {
-    struct snapshot *snapshot;
+    struct snapshot *snapshot; // NULL for none; being built while `builds`
     uint64_t scene_number;
     struct scene_revisions revisions;
     bool all_blinn_phong;
+    bool builds;
+    pthread_t builder;
+    int built; // set by the builder, atomically: 1 done, -1 failed
 };
 
+// Waits for the builder, if there is one.
 void live_scene_finish(struct live_scene *scene);
 
 // What a view wants to see.

@@ -57,6 +57,14 @@ struct snapshot;
 // Cost: seconds for millions of triangles. NULL with a message when memory ends.
 struct snapshot *snapshot_create(const struct scene *scene, bool all_blinn_phong,
                                  struct error *out_error);
+
+// The same in two steps: a copy by the thread that may edit the scene, and the rest by any other,
+// before the snapshot is used. Built in the background, that is by the calling thread alone, so
+// that at low priority it takes nothing from others. False when memory ends.
+struct snapshot *snapshot_copy(const struct scene *scene, bool all_blinn_phong,
+                               struct error *out_error);
+bool snapshot_build(struct snapshot *snapshot, bool in_background, struct error *out_error);
+
 struct snapshot *snapshot_retain(struct snapshot *snapshot); // any thread
 void snapshot_release(struct snapshot **snapshot);           // any thread; leaves NULL
 

@@ -1,5 +1,6 @@
 #include "renderer/reference/snapshot.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,7 +145,7 @@ static void material_init(struct material *material, const struct scene *scene,
     material->emits = material->emitted_luminance > 0.0f && isfinite(material->emitted_luminance);
 }
 
-static bool fill_tables(struct snapshot *snapshot, bool all_blinn_phong)
+static bool fill_tables(struct snapshot *snapshot, bool in_background)
 {
     struct scene *scene = snapshot->scene;
     bool *lets_through = calloc(scene->material_count + 1, sizeof(bool));
@@ -154,39 +155,54 @@ static bool fill_tables(struct snapshot *snapshot, bool all_blinn_phong)
     for (uint32_t i = 0; done && i < scene->node_count; i++)
         instance_init(&snapshot->instances[i], scene->nodes[i].world_from_local);
     for (uint32_t i = 0; done && i < scene->material_count; i++) {
-        material_init(&snapshot->materials[i], scene, &scene->materials[i], all_blinn_phong);
+        material_init(&snapshot->materials[i], scene, &scene->materials[i],
+                      snapshot->all_blinn_phong);
         lets_through[i] = snapshot->materials[i].lets_through;
         snapshot->has_bodies = snapshot->has_bodies || snapshot->materials[i].refracts;
     }
     if (done)
-        snapshot->rays = ray_scene_create_for_light(
-            &(struct ray_scene_params){.scene = scene, .lets_light_pass = lets_through});
+        snapshot->rays = ray_scene_create_for_light(&(struct ray_scene_params){
+            .scene = scene, .lets_light_pass = lets_through, .calling_thread_only = in_background});
     free(lets_through);
     return done && snapshot->rays;
+}
+
+struct snapshot *snapshot_copy(const struct scene *scene, bool all_blinn_phong,
+                               struct error *out_error)
+{
+    struct snapshot *snapshot = calloc(1, sizeof(*snapshot));
+    if (snapshot) {
+        snapshot->references = 1;
+        snapshot->all_blinn_phong = all_blinn_phong;
+        snapshot->scene = copy_scene(scene);
+    }
+    if (snapshot && snapshot->scene)
+        return snapshot;
+    error_set(out_error, "out of memory for a copy of scene \"%s\"", scene->name);
+    if (snapshot)
+        snapshot_release(&snapshot);
+    return NULL;
+}
+
+bool snapshot_build(struct snapshot *snapshot, bool in_background, struct error *out_error)
+{
+    assert(!snapshot->rays);
+    move_to_origin(snapshot);
+    if (fill_tables(snapshot, in_background)) {
+        snapshot->lights = lights_create(snapshot);
+        snapshot->environment = environment_create(&snapshot->scene->environment);
+    }
+    return (snapshot->lights && snapshot->environment) ||
+           error_set(out_error, "out of memory for tracing scene \"%s\"", snapshot->scene->name);
 }
 
 struct snapshot *snapshot_create(const struct scene *scene, bool all_blinn_phong,
                                  struct error *out_error)
 {
-    struct snapshot *snapshot = calloc(1, sizeof(*snapshot));
-    if (!snapshot)
-        goto fail;
-    snapshot->references = 1;
-    snapshot->scene = copy_scene(scene);
-    if (!snapshot->scene)
-        goto fail;
-    move_to_origin(snapshot);
-    if (!fill_tables(snapshot, all_blinn_phong))
-        goto fail;
-    snapshot->lights = lights_create(snapshot);
-    snapshot->environment = environment_create(&snapshot->scene->environment);
-    if (snapshot->lights && snapshot->environment)
-        return snapshot;
-fail:
-    error_set(out_error, "out of memory for a copy of scene \"%s\"", scene->name);
-    if (snapshot)
+    struct snapshot *snapshot = snapshot_copy(scene, all_blinn_phong, out_error);
+    if (snapshot && !snapshot_build(snapshot, false, out_error))
         snapshot_release(&snapshot);
-    return NULL;
+    return snapshot;
 }
 
 struct snapshot *snapshot_retain(struct snapshot *snapshot)

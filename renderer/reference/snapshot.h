@@ -54,6 +54,7 @@ struct snapshot {
     struct material *materials;
     struct lights *lights;
     struct environment *environment;
+    bool all_blinn_phong;
     double origin[3];
     float diagonal_m;
     bool has_bodies; // some material refracts

@@ -210,7 +210,7 @@ struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *para
     }
     ray_scene->scene = scene;
     ray_scene->mesh_count = scene->mesh_count;
-    ray_scene->device = rtcNewDevice(NULL);
+    ray_scene->device = rtcNewDevice(params->calling_thread_only ? "threads=1" : NULL);
     ray_scene->meshes = calloc(scene->mesh_count + 1, sizeof(*ray_scene->meshes));
     ray_scene->filters = calloc(scene->primitive_count + 1, sizeof(*ray_scene->filters));
     ray_scene->lets_light_pass = calloc(scene->material_count + 1, sizeof(bool));

@@ -40,6 +40,7 @@ typedef bool ray_scene_stops_light(void *context, const struct ray_crossing *cro
 struct ray_scene_params {
     const struct scene *scene;
     const bool *lets_light_pass; // by material, copied; NULL: none does
+    bool calling_thread_only;    // builds slowly, by the calling thread and at its priority
 };
 
 // One Embree scene per mesh, instanced by the visible nodes. The scene must outlive the result.
