@@ -42,12 +42,20 @@ bool rung_apply(const struct rung *rung, struct frame_params *params, struct err
 // {"preset", "scale", "set"}: equal text means equal settings. The caller deletes it.
 struct cJSON *rung_json(const struct rung *rung);
 
-// What pictures are compared with.
+// What pictures are compared with. Those but the first have no pixels if they are not known.
+enum truth_picture {
+    TRUTH_ALL,
+    TRUTH_DIRECT, // emission, background, and light of lamps and emitters reflected once
+    // Of one half of the samples. It differs from the whole as much as the whole does from what it
+    // would be without noise: the halves are independent, so that half of their difference is both.
+    TRUTH_HALF,
+    TRUTH_HALF_DIRECT,
+    TRUTH_PICTURE_COUNT
+};
+
 struct truth {
-    struct picture picture;
-    struct picture direct; // emission, background, and light of lamps and emitters reflected once;
-                           // no pixels if that is not known
-    double noise;          // standard error over mean radiance; NaN if that is not known
+    struct picture pictures[TRUTH_PICTURE_COUNT];
+    double noise; // standard error over mean luminance; NaN if that is not known
 };
 
 struct truth_params {
@@ -76,6 +84,12 @@ struct accuracy {
     uint32_t edits;  // of a light that are measured; 0 for none
 };
 
+// Judges a picture: adds "metrics" to the object and, where the truth's direct light is known,
+// "indirect", those of what is left without `direct`. `flip_map` takes the errors of LDR-FLIP.
+bool accuracy_judge(const struct accuracy *accuracy, const struct picture *picture,
+                    const struct picture *direct, struct cJSON *object, float *flip_map,
+                    struct error *out_error);
+
 // Measures one rung and writes its pictures into the folder. The entry of results.json is the
 // caller's; NULL with a message.
 struct cJSON *accuracy_measure(const struct accuracy *accuracy, const struct rung *rung,
@@ -86,9 +100,10 @@ struct cJSON *accuracy_identity(const struct cli_shot_options *options,
                                 const struct cli_shot *shot);
 
 // All that results depend on, beside the rung: equal text means that they can be kept. Program and
-// shaders count by size and time of change. `reference_path` is NULL for a traced truth.
+// shaders count by size and time of change. `reference_path` is NULL for a traced truth, whose own
+// error is there, too. NULL with a message when memory ends.
 struct cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_path,
-                             const struct cJSON *identity);
+                             const struct cJSON *identity, struct error *out_error);
 
 // Results of a run: {"setup", "metrics", "rungs", "noise"}; the last compares the noise of the
 // truth with the smallest error of a final picture, both over the mean of the truth.

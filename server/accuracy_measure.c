@@ -67,7 +67,7 @@ static void resample(const struct picture *source, struct picture *target)
 static bool take_picture(const struct rung_work *work, const struct frame_pixels *pixels,
                          struct picture *out_picture)
 {
-    const struct picture *truth = &work->accuracy->truth.picture;
+    const struct picture *truth = &work->accuracy->truth.pictures[TRUTH_ALL];
     struct picture picture;
     if (!cli_take_picture(pixels, &picture))
         return false;
@@ -181,6 +181,7 @@ static bool measure_edits(struct rung_work *work, struct error *out_error)
     const struct accuracy *accuracy = work->accuracy;
     struct edit_params params = {.renderer = accuracy->shot.renderer,
                                  .scene = accuracy->shot.scene,
+                                 .view = work->view,
                                  .frame = &work->params,
                                  .light = SCENE_NONE,
                                  .material = SCENE_NONE,
@@ -225,23 +226,21 @@ static bool take_indirect(const struct accuracy *accuracy, const struct picture 
     return true;
 }
 
-// Judges a picture as it is, and, where the truth's direct light is known, without that.
-static bool judge_picture(struct rung_work *work, const char *state, struct picture *picture,
-                          struct error *out_error)
+bool accuracy_judge(const struct accuracy *accuracy, const struct picture *picture,
+                    const struct picture *direct, cJSON *object, float *flip_map,
+                    struct error *out_error)
 {
-    const struct accuracy *accuracy = work->accuracy;
-    const struct truth *truth = &accuracy->truth;
-    cJSON *object = cJSON_GetObjectItemCaseSensitive(work->entry, state);
+    const struct picture *truth = accuracy->truth.pictures;
     struct image_metrics metrics;
-    if (!image_metrics_compute(picture, &truth->picture, &accuracy->display, &metrics,
-                               work->flip_map, out_error))
+    if (!image_metrics_compute(picture, &truth[TRUTH_ALL], &accuracy->display, &metrics, flip_map,
+                               out_error))
         return false;
     add_metrics(object, "metrics", &metrics);
-    if (!truth->direct.rgb)
+    if (!truth[TRUTH_DIRECT].rgb)
         return true;
     struct picture ours = {0}, wanted = {0};
-    bool done = (take_indirect(accuracy, picture, &work->direct, &ours) &&
-                 take_indirect(accuracy, &truth->picture, &truth->direct, &wanted)) ||
+    bool done = (take_indirect(accuracy, picture, direct, &ours) &&
+                 take_indirect(accuracy, &truth[TRUTH_ALL], &truth[TRUTH_DIRECT], &wanted)) ||
                 error_set(out_error, "out of memory");
     done = done &&
            image_metrics_compute(&ours, &wanted, &accuracy->display, &metrics, NULL, out_error);
@@ -250,6 +249,14 @@ static bool judge_picture(struct rung_work *work, const char *state, struct pict
     picture_finish(&ours);
     picture_finish(&wanted);
     return done;
+}
+
+static bool judge_picture(struct rung_work *work, const char *state, const struct picture *picture,
+                          struct error *out_error)
+{
+    return accuracy_judge(work->accuracy, picture, &work->direct,
+                          cJSON_GetObjectItemCaseSensitive(work->entry, state), work->flip_map,
+                          out_error);
 }
 
 // Writes NAME-SUFFIX.png into the folder and notes it in the entry.
@@ -266,7 +273,7 @@ static bool write_png(struct rung_work *work, cJSON *pictures, const char *suffi
 // The converged picture, the heat map, and a strip of truth, cold, converged and heat map.
 static bool write_pictures(struct rung_work *work, struct error *out_error)
 {
-    const struct picture *truth = &work->accuracy->truth.picture;
+    const struct picture *truth = &work->accuracy->truth.pictures[TRUTH_ALL];
     uint32_t width = truth->width, height = truth->height;
     uint32_t strip_width = STRIP_PICTURES * width + (STRIP_PICTURES - 1) * STRIP_GAP;
     size_t bytes = 3 * picture_pixel_count(truth);
@@ -305,7 +312,8 @@ static bool measure(struct rung_work *work, struct error *out_error)
                             gi_method_names[work->params.settings.gi_method]);
     work->params.width = scaled_edge(work->params.width, work->rung->scale);
     work->params.height = scaled_edge(work->params.height, work->rung->scale);
-    work->flip_map = malloc(picture_pixel_count(&accuracy->truth.picture) * sizeof(float));
+    work->flip_map =
+        malloc(picture_pixel_count(&accuracy->truth.pictures[TRUTH_ALL]) * sizeof(float));
     if (!work->flip_map)
         return error_set(out_error, "out of memory");
     if (!forget_light(accuracy, out_error) || !measure_frames(work, out_error) ||
@@ -314,11 +322,13 @@ static bool measure(struct rung_work *work, struct error *out_error)
     work->view = renderer_view_create(accuracy->shot.renderer);
     if (!work->view)
         return error_set(out_error, "out of memory");
-    bool done = draw_pictures(work, out_error) && draw_direct(work, out_error);
+    // Edits go on from the picture that has settled.
+    bool done = draw_pictures(work, out_error) && draw_direct(work, out_error) &&
+                measure_edits(work, out_error);
     renderer_view_destroy(accuracy->shot.renderer, &work->view);
     return done && judge_picture(work, "cold", &work->cold, out_error) &&
            judge_picture(work, "converged", &work->converged, out_error) &&
-           write_pictures(work, out_error) && measure_edits(work, out_error);
+           write_pictures(work, out_error);
 }
 
 cJSON *accuracy_measure(const struct accuracy *accuracy, const struct rung *rung,

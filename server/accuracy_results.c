@@ -65,25 +65,42 @@ static bool get_point(const cJSON *entry, enum image_metric metric, double *out_
     return true;
 }
 
-// Says whether the truth is so much better than the best rung that errors are not its own.
+// The smallest error of a final picture; infinite without any.
+static double smallest_error(const cJSON *rungs, const char *part, enum image_metric metric)
+{
+    const cJSON *entry;
+    double smallest = INFINITY;
+    cJSON_ArrayForEach(entry, rungs)
+    {
+        const cJSON *value =
+            get(get(get(entry, "converged"), part), image_metric_infos[metric].name);
+        if (cJSON_IsNumber(value))
+            smallest = fmin(smallest, image_metric_error(metric, value->valuedouble));
+    }
+    return smallest;
+}
+
+// Says for each metric whether the truth is so much better than the best rung that errors are not
+// its own.
 static void judge_noise(cJSON *results)
 {
-    const cJSON *reference = get(get(results, "setup"), "reference"), *entry;
-    const cJSON *noise = get(reference, "noise"), *mean = get(reference, "mean");
-    double smallest = INFINITY, ms, error;
-    cJSON_ArrayForEach(entry, get(results, "rungs"))
-    {
-        if (get_point(entry, METRIC_RMSE, &ms, &error))
-            smallest = fmin(smallest, error / cJSON_GetNumberValue(mean));
-    }
-    cJSON *json = cJSON_CreateObject();
-    cJSON_AddItemToObject(json, "reference", cJSON_Duplicate(noise, true));
-    cJSON_AddNumberToObject(json, "smallest_error", smallest);
-    cJSON_AddBoolToObject(json, "enough",
-                          cJSON_IsNumber(noise) &&
-                              noise->valuedouble <= RESULTS_NOISE_SHARE * smallest);
+    const cJSON *own = get(get(get(results, "setup"), "reference"), "error");
     cJSON_DeleteItemFromObjectCaseSensitive(results, "noise");
-    cJSON_AddItemToObject(results, "noise", json);
+    cJSON *noise = cJSON_AddObjectToObject(results, "noise");
+    for (int p = 0; p < 2; p++) {
+        cJSON *part = cJSON_AddObjectToObject(noise, parts[p]);
+        for (int i = 0; i < METRIC_NOT_FINITE; i++) {
+            const cJSON *value = get(get(own, parts[p]), image_metric_infos[i].name);
+            double smallest = smallest_error(get(results, "rungs"), parts[p], (enum image_metric)i);
+            if (!cJSON_IsNumber(value) || !isfinite(smallest))
+                continue;
+            double error = image_metric_error((enum image_metric)i, value->valuedouble);
+            cJSON *item = cJSON_AddObjectToObject(part, image_metric_infos[i].name);
+            cJSON_AddNumberToObject(item, "reference", error);
+            cJSON_AddNumberToObject(item, "smallest", smallest);
+            cJSON_AddBoolToObject(item, "enough", error <= RESULTS_NOISE_SHARE * smallest);
+        }
+    }
 }
 
 static cJSON *metric_list(void)

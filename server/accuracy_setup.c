@@ -1,8 +1,8 @@
 // What results depend on: the scene as it is shown, the program, and the truth.
 #include <cjson/cJSON.h>
 #include <ftw.h>
-#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -82,20 +82,32 @@ cJSON *accuracy_identity(const struct cli_shot_options *options, const struct cl
     return json;
 }
 
-static double mean_radiance(const struct picture *picture)
+// The truth's own error, by every metric.
+static cJSON *truth_error(const struct accuracy *accuracy, struct error *out_error)
 {
-    double sum = 0.0;
-    size_t count = 3 * picture_pixel_count(picture);
-    for (size_t i = 0; i < count; i++)
-        sum += isfinite(picture->rgb[i]) ? (double)picture->rgb[i] : 0.0;
-    return sum / (double)count;
+    const struct picture *pictures = accuracy->truth.pictures;
+    if (!pictures[TRUTH_HALF].rgb)
+        return cJSON_CreateNull();
+    cJSON *json = cJSON_CreateObject();
+    float *map = malloc(picture_pixel_count(&pictures[TRUTH_ALL]) * sizeof(float));
+    bool done = map ? accuracy_judge(accuracy, &pictures[TRUTH_HALF], &pictures[TRUTH_HALF_DIRECT],
+                                     json, map, out_error)
+                    : error_set(out_error, "out of memory");
+    free(map);
+    if (done)
+        return json;
+    cJSON_Delete(json);
+    return NULL;
 }
 
 // All that results depend on, beside the rung.
 cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_path,
-                      const cJSON *identity)
+                      const cJSON *identity, struct error *out_error)
 {
-    const struct picture *truth = &accuracy->truth.picture;
+    const struct picture *truth = &accuracy->truth.pictures[TRUTH_ALL];
+    cJSON *own_error = truth_error(accuracy, out_error);
+    if (!own_error)
+        return NULL;
     cJSON *setup = cJSON_CreateObject();
     cJSON_AddItemToObject(setup, "scene", cJSON_Duplicate(identity, true));
     cJSON_AddStringToObject(setup, "gl_renderer",
@@ -114,7 +126,7 @@ cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_pat
     cJSON_AddNumberToObject(reference, "noise", accuracy->truth.noise); // null if not known
     add_hash(reference, "pixels",
              hash_bytes(HASH_START, truth->rgb, 3 * sizeof(float) * picture_pixel_count(truth)));
-    cJSON_AddNumberToObject(reference, "mean", mean_radiance(truth));
-    cJSON_AddBoolToObject(reference, "direct", accuracy->truth.direct.rgb != NULL);
+    cJSON_AddItemToObject(reference, "error", own_error);
+    cJSON_AddBoolToObject(reference, "direct", accuracy->truth.pictures[TRUTH_DIRECT].rgb != NULL);
     return setup;
 }

@@ -8,8 +8,9 @@
 #include "server/accuracy.h"
 #include "server/cli_bench.h"
 
-#define TRUTH_SEED       1u
-#define SAMPLES_AT_ONCE  16u
+#define FIRST_SEED       1u
+#define SAMPLES_AT_ONCE  8u
+#define PATH_SIZE        4096u
 #define SECONDS_PER_NEWS 10.0
 // Light of the sky is gathered by cones, so that it is indirect light here.
 #define LAMP_LAYERS  (REFERENCE_LAYER(REFERENCE_EMISSION) | REFERENCE_LAYER(REFERENCE_DIRECT))
@@ -22,7 +23,7 @@ static char *describe(const struct truth_params *params)
     cJSON_AddItemToObject(json, "scene", cJSON_Duplicate(params->identity, true));
     cJSON_AddNumberToObject(json, "samples", params->samples);
     cJSON_AddNumberToObject(json, "until_noise", params->until_noise);
-    cJSON_AddNumberToObject(json, "seed", TRUTH_SEED);
+    cJSON_AddNumberToObject(json, "seed", FIRST_SEED);
     char *text = cJSON_PrintUnformatted(json);
     cJSON_Delete(json);
     return text;
@@ -44,25 +45,22 @@ static bool load_picture(const struct truth_params *params, const char *path,
            check_size(params, path, out_picture, out_error);
 }
 
-// Names of the kept files.
-struct kept_paths {
-    char picture[4096], direct[4096], description[4096];
-};
+static const char *const kept_names[TRUTH_PICTURE_COUNT] = {
+    "reference.pfm", "reference-direct.pfm", "reference-half.pfm", "reference-half-direct.pfm"};
 
-static void name_files(const char *folder, struct kept_paths *out_paths)
+static void name_file(const struct truth_params *params, const char *name, char out_path[PATH_SIZE])
 {
-    snprintf(out_paths->picture, sizeof(out_paths->picture), "%s/reference.pfm", folder);
-    snprintf(out_paths->direct, sizeof(out_paths->direct), "%s/reference-direct.pfm", folder);
-    snprintf(out_paths->description, sizeof(out_paths->description), "%s/reference.json", folder);
+    snprintf(out_path, PATH_SIZE, "%s/%s", params->folder, name);
 }
 
-// The picture that an earlier run has kept, if it is the same.
-static bool load_kept(const struct truth_params *params, const struct kept_paths *paths,
-                      const char *description, struct truth *out_truth)
+// The pictures that an earlier run has kept, if they are the same.
+static bool load_kept(const struct truth_params *params, const char *description,
+                      struct truth *out_truth)
 {
     struct error ignored;
-    char *text = calloc(1, strlen(description) + 64);
-    FILE *file = fopen(paths->description, "rb");
+    char path[PATH_SIZE], *text = calloc(1, strlen(description) + 64);
+    name_file(params, "reference.json", path);
+    FILE *file = fopen(path, "rb");
     bool done = false;
     if (text && file) {
         size_t length = fread(text, 1, strlen(description) + 63, file);
@@ -76,108 +74,147 @@ static bool load_kept(const struct truth_params *params, const struct kept_paths
     if (file)
         fclose(file);
     free(text);
-    done = done && load_picture(params, paths->picture, &out_truth->picture, &ignored) &&
-           load_picture(params, paths->direct, &out_truth->direct, &ignored);
+    for (int i = 0; i < TRUTH_PICTURE_COUNT && done; i++) {
+        name_file(params, kept_names[i], path);
+        done = load_picture(params, path, &out_truth->pictures[i], &ignored);
+    }
     if (!done)
         truth_finish(out_truth);
     return done;
 }
 
-static bool keep(const struct kept_paths *paths, const char *description, const struct truth *truth,
-                 struct error *out_error)
+static bool keep(const struct truth_params *params, const char *description,
+                 const struct truth *truth, struct error *out_error)
 {
-    if (!picture_write_pfm(paths->picture, &truth->picture, out_error) ||
-        !picture_write_pfm(paths->direct, &truth->direct, out_error))
-        return false;
-    FILE *file = fopen(paths->description, "wb");
+    char path[PATH_SIZE];
+    for (int i = 0; i < TRUTH_PICTURE_COUNT; i++) {
+        name_file(params, kept_names[i], path);
+        if (!picture_write_pfm(path, &truth->pictures[i], out_error))
+            return false;
+    }
+    name_file(params, "reference.json", path);
+    FILE *file = fopen(path, "wb");
     bool done = file && fprintf(file, "%s\n%.17g\n", description, truth->noise) > 0;
     if (file)
         done = fclose(file) == 0 && done;
-    return done || error_set(out_error, "cannot write \"%s\"", paths->description);
+    return done || error_set(out_error, "cannot write \"%s\"", path);
 }
 
-static bool take_layers(struct reference *reference, uint32_t layers, struct picture *out_picture)
+// Adds a share of the light of some layers.
+static bool add_layers(struct reference *reference, uint32_t layers, float share,
+                       struct picture *picture)
 {
-    size_t count = picture_pixel_count(out_picture);
+    size_t count = picture_pixel_count(picture);
     float *rgba = malloc(4 * count * sizeof(float));
     if (!rgba)
         return false;
     reference_get_picture(reference, layers, rgba);
-    for (size_t i = 0; i < count; i++)
-        memcpy(out_picture->rgb + 3 * i, rgba + 4 * i, 3 * sizeof(float));
+    for (size_t i = 0; i < 3 * count; i++)
+        picture->rgb[i] += share * rgba[i / 3 * 4 + i % 3];
     free(rgba);
     return true;
 }
 
-// Traces until there are enough samples, or the noise is low enough.
-static void trace(const struct truth_params *params, struct reference *reference,
-                  struct reference_progress *out_progress)
+// Both halves of the samples, each a reference with random numbers of its own.
+struct halves {
+    struct reference *references[2];
+};
+
+static void get_progress(const struct halves *halves, uint32_t *out_samples, double *out_noise)
 {
-    uint32_t wanted = params->until_noise > 0.0 ? MOST_SAMPLES : params->samples;
-    double last_news = 0.0, started = 1e-3 * bench_now_ms();
-    *out_progress = (struct reference_progress){.noise = INFINITY};
-    while (out_progress->samples < wanted && !(out_progress->noise <= params->until_noise)) {
-        uint32_t missing = wanted - out_progress->samples;
-        reference_render(reference, missing < SAMPLES_AT_ONCE ? missing : SAMPLES_AT_ONCE);
-        reference_get_progress(reference, out_progress);
-        double elapsed = 1e-3 * bench_now_ms() - started;
-        if (elapsed - last_news < SECONDS_PER_NEWS)
+    struct reference_progress progress[2];
+    for (int i = 0; i < 2; i++)
+        reference_get_progress(halves->references[i], &progress[i]);
+    *out_samples = progress[0].samples + progress[1].samples;
+    *out_noise = 0.5 * hypot(progress[0].noise, progress[1].noise);
+}
+
+// Traces until there are enough samples, or the noise is low enough.
+static void trace(const struct truth_params *params, const struct halves *halves, double *out_noise)
+{
+    bool until_noise = params->until_noise > 0.0;
+    uint32_t wanted = until_noise ? MOST_SAMPLES : params->samples, samples = 0;
+    double started_ms = bench_now_ms(), last_news_s = 0.0;
+    *out_noise = INFINITY;
+    while (samples < wanted && !(*out_noise <= params->until_noise)) {
+        uint32_t missing = (wanted - samples + 1) / 2;
+        for (int i = 0; i < 2; i++)
+            reference_render(halves->references[i],
+                             missing < SAMPLES_AT_ONCE ? missing : SAMPLES_AT_ONCE);
+        get_progress(halves, &samples, out_noise);
+        double elapsed_s = 1e-3 * (bench_now_ms() - started_ms);
+        if (elapsed_s - last_news_s < SECONDS_PER_NEWS)
             continue;
-        last_news = elapsed;
+        last_news_s = elapsed_s;
         // Noise falls with the square root of the samples.
-        double ratio = out_progress->noise / params->until_noise;
-        double left = params->until_noise > 0.0
-                          ? elapsed * fmax(ratio * ratio - 1.0, 0.0)
-                          : elapsed * (wanted - out_progress->samples) / out_progress->samples;
+        double ratio = *out_noise / params->until_noise;
+        double left_s = until_noise ? elapsed_s * fmax(ratio * ratio - 1.0, 0.0)
+                                    : elapsed_s * (double)(wanted - samples) / samples;
         fprintf(stderr,
                 "voxcast: reference: %u samples a pixel, noise %.2f %%, about %.0f s left\n",
-                out_progress->samples, 100.0 * out_progress->noise, left);
+                samples, 100.0 * *out_noise, fmax(left_s, 0.0));
     }
+    fprintf(stderr, "voxcast: reference: %u samples a pixel, noise %.2f %%\n", samples,
+            100.0 * *out_noise);
+}
+
+static bool take_pictures(const struct halves *halves, const struct frame_params *frame,
+                          struct truth *truth)
+{
+    for (int i = 0; i < TRUTH_PICTURE_COUNT; i++) {
+        struct picture *picture = &truth->pictures[i];
+        bool whole = i < TRUTH_HALF;
+        uint32_t layers =
+            i == TRUTH_DIRECT || i == TRUTH_HALF_DIRECT ? LAMP_LAYERS : REFERENCE_ALL_LAYERS;
+        if (!picture_init(picture, frame->width, frame->height) ||
+            !add_layers(halves->references[0], layers, whole ? 0.5f : 1.0f, picture) ||
+            (whole && !add_layers(halves->references[1], layers, 0.5f, picture)))
+            return false;
+    }
+    return true;
 }
 
 static bool trace_truth(const struct truth_params *params, struct truth *truth,
                         struct error *out_error)
 {
     const struct frame_params *frame = &params->shot->params;
-    struct reference_progress progress;
-    struct snapshot *snapshot = snapshot_create(
-        params->shot->scene, frame->settings.shading_model == SHADING_MODEL_BLINN_PHONG, out_error);
-    if (!snapshot)
-        return false;
-    struct reference *reference =
-        reference_create(&(struct reference_params){.scene = snapshot,
-                                                    .camera = frame->camera,
-                                                    .width = frame->width,
-                                                    .height = frame->height,
-                                                    .max_bounces = REFERENCE_UNLIMITED,
-                                                    .seed = TRUTH_SEED},
-                         out_error);
-    snapshot_release(&snapshot);
-    if (!reference)
-        return false;
-    trace(params, reference, &progress);
-    truth->noise = progress.noise;
-    fprintf(stderr, "voxcast: reference: %u samples a pixel, noise %.2f %%\n", progress.samples,
-            100.0 * progress.noise);
-    bool done = picture_init(&truth->picture, frame->width, frame->height) &&
-                picture_init(&truth->direct, frame->width, frame->height) &&
-                take_layers(reference, REFERENCE_ALL_LAYERS, &truth->picture) &&
-                take_layers(reference, LAMP_LAYERS, &truth->direct);
-    reference_destroy(&reference);
-    return done || error_set(out_error, "out of memory");
+    struct halves halves = {{NULL, NULL}};
+    struct reference_params reference = {
+        .scene =
+            snapshot_create(params->shot->scene,
+                            frame->settings.shading_model == SHADING_MODEL_BLINN_PHONG, out_error),
+        .camera = frame->camera,
+        .width = frame->width,
+        .height = frame->height,
+        .max_bounces = REFERENCE_UNLIMITED};
+    bool done = reference.scene != NULL;
+    for (int i = 0; i < 2 && done; i++) {
+        reference.seed = FIRST_SEED + (uint64_t)i;
+        halves.references[i] = reference_create(&reference, out_error);
+        done = halves.references[i] != NULL;
+    }
+    if (reference.scene)
+        snapshot_release(&reference.scene);
+    if (done) {
+        trace(params, &halves, &truth->noise);
+        done = take_pictures(&halves, frame, truth) || error_set(out_error, "out of memory");
+    }
+    for (int i = 0; i < 2; i++)
+        if (halves.references[i])
+            reference_destroy(&halves.references[i]);
+    return done;
 }
 
 static bool load_given(const struct truth_params *params, struct truth *truth,
                        struct error *out_error)
 {
-    return load_picture(params, params->path, &truth->picture, out_error) &&
+    return load_picture(params, params->path, &truth->pictures[TRUTH_ALL], out_error) &&
            (!params->direct_path ||
-            load_picture(params, params->direct_path, &truth->direct, out_error));
+            load_picture(params, params->direct_path, &truth->pictures[TRUTH_DIRECT], out_error));
 }
 
 bool truth_get(const struct truth_params *params, struct truth *out_truth, struct error *out_error)
 {
-    struct kept_paths paths;
     *out_truth = (struct truth){.noise = NAN};
     if (params->path) {
         if (load_given(params, out_truth, out_error))
@@ -188,14 +225,13 @@ bool truth_get(const struct truth_params *params, struct truth *out_truth, struc
     char *description = describe(params);
     if (!description)
         return error_set(out_error, "out of memory");
-    name_files(params->folder, &paths);
-    bool done = load_kept(params, &paths, description, out_truth);
+    bool done = load_kept(params, description, out_truth);
     if (done)
         fprintf(stderr, "voxcast: reference: kept from an earlier run, noise %.2f %%\n",
                 100.0 * out_truth->noise);
     else
         done = trace_truth(params, out_truth, out_error) &&
-               keep(&paths, description, out_truth, out_error);
+               keep(params, description, out_truth, out_error);
     free(description);
     if (!done)
         truth_finish(out_truth);
@@ -204,6 +240,6 @@ bool truth_get(const struct truth_params *params, struct truth *out_truth, struc
 
 void truth_finish(struct truth *truth)
 {
-    picture_finish(&truth->picture);
-    picture_finish(&truth->direct);
+    for (int i = 0; i < TRUTH_PICTURE_COUNT; i++)
+        picture_finish(&truth->pictures[i]);
 }

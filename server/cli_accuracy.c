@@ -43,7 +43,7 @@ static const char usage[] =
     "                       of pixels over the mean of the picture\n"
     "  --frames N           frames of a moving camera that are measured, at most 4 s of them,\n"
     "                       1 to 1000 (default 12)\n"
-    "  --edits N            edits of a light that are measured, 0 to 100 (default 2)\n"
+    "  --edits N            edits of a light that are measured, 0 to 100 (default 1)\n"
     "  --size WxH           1x1 to 3840x2160 (default 640x360)\n"
     "  --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu   as voxcast render;\n"
     "                       --gi and --set hold for the rungs that do not say otherwise\n";
@@ -66,17 +66,27 @@ static void print_progress(uint32_t done, uint32_t count, const char *name, doub
             done, count, name, took_s, floor(left_s / 60.0), floor(fmod(left_s, 60.0)));
 }
 
+// Names the metrics by which the truth is not good enough.
 static void warn_of_noise(const cJSON *results)
 {
+    static const char *const parts[2] = {"metrics", "indirect"};
     const cJSON *noise = cJSON_GetObjectItemCaseSensitive(results, "noise");
-    const cJSON *reference = cJSON_GetObjectItemCaseSensitive(noise, "reference");
-    double smallest =
-        cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(noise, "smallest_error"));
-    if (cJSON_IsNumber(reference) && reference->valuedouble > RESULTS_NOISE_SHARE * smallest)
-        fprintf(stderr,
-                "voxcast: warning: the noise of the reference, %.2f %%, is more than a tenth of "
-                "the smallest error, %.2f %%; --until-noise %.2g would do\n",
-                100.0 * reference->valuedouble, 100.0 * smallest, RESULTS_NOISE_SHARE * smallest);
+    uint32_t count = 0;
+    for (int p = 0; p < 2; p++)
+        for (int i = 0; i < METRIC_COUNT; i++) {
+            const struct image_metric_info *info = &image_metric_infos[i];
+            const cJSON *item = cJSON_GetObjectItemCaseSensitive(
+                cJSON_GetObjectItemCaseSensitive(noise, parts[p]), info->name);
+            if (!cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(item, "enough")))
+                continue;
+            fprintf(stderr, "%s%s%s",
+                    count++ == 0 ? "voxcast: warning: the reference itself errs by more than a "
+                                   "tenth of the smallest error by "
+                                 : ", ",
+                    info->title, p ? " of indirect light" : "");
+        }
+    if (count > 0)
+        fputs("; it needs more samples\n", stderr);
 }
 
 // Measures the rungs that are not there yet; writes everything after each.
@@ -111,7 +121,7 @@ static bool climb(const struct accuracy *accuracy, const struct ladder *ladder, 
 
 static bool write_reference_png(const struct accuracy *accuracy, struct error *out_error)
 {
-    const struct picture *truth = &accuracy->truth.picture;
+    const struct picture *truth = &accuracy->truth.pictures[TRUTH_ALL];
     char path[4096];
     uint8_t *rgb = malloc(3 * picture_pixel_count(truth));
     if (!rgb)
@@ -156,7 +166,7 @@ static void choose_display(struct accuracy *accuracy)
     const struct render_settings *settings = &accuracy->shot.params.settings;
     float exposure = exp2f(settings->exposure_ev);
     if (settings->exposure_mode == EXPOSURE_AUTOMATIC)
-        exposure *= display_automatic_exposure(&accuracy->truth.picture);
+        exposure *= display_automatic_exposure(&accuracy->truth.pictures[TRUTH_ALL]);
     accuracy->display = (struct display_params){
         .exposure = exposure, .tonemap = settings->tonemap, .gamma = settings->gamma};
 }
@@ -176,12 +186,13 @@ static bool run(const struct accuracy_options *options, struct accuracy *accurac
                           &accuracy->truth, out_error);
     if (done) {
         choose_display(accuracy);
-        cJSON *results = results_open(
-            accuracy->folder, accuracy_setup(accuracy, options->reference, identity), &kept);
-        if (kept > 0)
+        done = find_self_lit(accuracy, out_error) && write_reference_png(accuracy, out_error);
+        cJSON *setup =
+            done ? accuracy_setup(accuracy, options->reference, identity, out_error) : NULL;
+        cJSON *results = setup ? results_open(accuracy->folder, setup, &kept) : NULL;
+        if (results && kept > 0)
             fprintf(stderr, "voxcast: %u rungs of the same set-up are there already\n", kept);
-        done = write_reference_png(accuracy, out_error) && find_self_lit(accuracy, out_error) &&
-               climb(accuracy, ladder, results, out_error);
+        done = results && climb(accuracy, ladder, results, out_error);
         cJSON_Delete(results);
         truth_finish(&accuracy->truth);
         free(accuracy->self_lit);
@@ -195,7 +206,7 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
 {
     struct cli_parser parser = {.command = "accuracy", .usage = usage, .max_arguments = 1};
     *options = (struct accuracy_options){
-        .shot.size = {640, 360}, .ladder = "quick", .frames = DEFAULT_FRAMES, .edits = 2};
+        .shot.size = {640, 360}, .ladder = "quick", .frames = DEFAULT_FRAMES, .edits = 1};
     cli_take_shot(&parser, &options->shot);
     cli_take_text(&parser, "out", &options->out);
     cli_take_text(&parser, "ladder", &options->ladder);
@@ -221,6 +232,8 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
     else if (options->shot.settings.preset != CLI_NO_CHOICE ||
              options->shot.settings.view != CLI_NO_CHOICE)
         wrong = "--preset and --view are up to the ladder; see voxcast accuracy --help";
+    else if (options->shot.settings.gi == GI_METHOD_REFERENCE)
+        wrong = "--gi reference is the truth, and no rung; see voxcast accuracy --help";
     if (truths == 0)
         options->until_noise = DEFAULT_NOISE;
     if (wrong)

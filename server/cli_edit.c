@@ -284,14 +284,15 @@ static bool allocate(struct edit_bench *bench)
         done = done && bench->states[i].settled && bench->states[i].direct;
     }
     bench->frame = malloc(bytes);
-    bench->view = renderer_view_create(bench->params->renderer);
+    bench->view =
+        bench->params->view ? bench->params->view : renderer_view_create(bench->params->renderer);
     return done && bench->frame && bench->view;
 }
 
 static void release(struct edit_bench *bench)
 {
     apply_state(bench, &bench->states[0]);
-    if (bench->view)
+    if (bench->view && !bench->params->view)
         renderer_view_destroy(bench->params->renderer, &bench->view);
     for (int i = 0; i < 2; i++) {
         free(bench->states[i].settled);

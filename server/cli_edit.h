@@ -16,6 +16,7 @@ extern const char *const edit_kind_names[EDIT_KIND_COUNT];
 struct edit_params {
     struct renderer *renderer; // shows `scene`
     struct scene *scene;       // is as before afterwards
+    struct view *view;         // to measure in; NULL for one of its own
     const struct frame_params *frame;
     enum edit_kind kind;
     uint32_t light, material; // SCENE_NONE for both: the first lamp that shines, else material
@@ -41,7 +42,7 @@ struct edit_result {
     struct cli_samples frames[EDIT_STAGE_COUNT]; // likewise
 };
 
-// Measures in a view of its own; times are those of drawing and reading back linear pictures, one
+// Measures; times are those of drawing and reading back linear pictures, one
 // after another. False with a message if nothing shines, or the picture does not settle. The
 // result is to be finished in any case.
 bool edit_measure(const struct edit_params *params, struct edit_result *out_result,

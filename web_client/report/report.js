@@ -155,6 +155,21 @@
     if (onFront) element(svg, 'text', { class: 'name', x: cx + 11, y: cy - 7 }, point.rung.name);
   }
 
+  /** What the truth errs by itself: a line where it is within the chart, and words. */
+  function drawNoise(svg, y) {
+    const noise = noiseOf();
+    const note = document.getElementById('noise');
+    note.textContent = 'The error of the truth itself is not known.';
+    if (!noise) return;
+    note.textContent =
+      `By this measure the truth itself errs by ${short(noise.reference)}; the smallest error of a final picture ` +
+      `is ${short(noise.smallest)}. ${noise.enough ? 'That is little enough.' : 'That is more than a tenth: it needs more samples.'}`;
+    const height = y.scale(noise.reference);
+    if (!(height <= AREA.bottom && height >= AREA.top)) return;
+    element(svg, 'line', { class: 'noise', x1: AREA.left, x2: AREA.right, y1: height, y2: height });
+    element(svg, 'text', { x: AREA.right, y: height - 5, 'text-anchor': 'end' }, 'noise of the truth');
+  }
+
   function drawChart() {
     const svg = document.getElementById('chart');
     svg.replaceChildren();
@@ -167,6 +182,7 @@
     const x = logScale(all.map(({ ms }) => ms), AREA.left, AREA.right);
     const y = logScale(all.map(({ error }) => error), AREA.bottom, AREA.top);
     drawAxes(svg, x, y);
+    drawNoise(svg, y);
     const corners = front.map(({ ms, error }, i) => {
       const from = i > 0 ? `H${x.scale(ms)}V` : `M${x.scale(ms)} `;
       return from + y.scale(error);
@@ -236,14 +252,13 @@
     document.getElementById('choice').append(wrapper);
   }
 
+  /** The truth's own error by the metric chosen, or undefined. */
+  const noiseOf = () => globalThis.results.noise[choice.part]?.[choice.metric];
+
   function describeNoise() {
-    const { reference, smallest_error: smallest, enough } = globalThis.results.noise;
-    if (typeof reference !== 'number') return 'Its noise is not known.';
-    const verdict = enough ? 'below a tenth of' : 'more than a tenth of';
-    return (
-      `Its noise (standard error of pixels over the mean) is ${short(100 * reference)} %, ` +
-      `${verdict} the smallest error of any rung, ${short(100 * smallest)} % (RMSE over the mean).`
-    );
+    const { reference } = setup;
+    if (typeof reference.noise !== 'number') return 'Its noise is not known.';
+    return `Its noise (standard error of pixels over the mean) is ${short(100 * reference.noise)} %.`;
   }
 
   function describeSetup() {

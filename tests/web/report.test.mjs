@@ -1,0 +1,141 @@
+// Proves the page of voxcast accuracy: Chromium opens it from a folder with made-up results, as a
+// person does after a run; the test looks at points, front, tip and table, and runs axe-core.
+import assert from 'node:assert/strict';
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+import { openBrowser } from './browser.mjs';
+
+const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
+const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+const source = (name) => fileURLToPath(new URL(`../../web_client/report/${name}`, import.meta.url));
+
+const metrics = (flip, ssim, red) => ({ rmse: flip / 2, energy_red: red, ssim, ldr_flip: flip });
+
+/** An entry of results.json. */
+function rung(name, method, ms, flip, ssim, red) {
+  return {
+    name,
+    method,
+    settings: { preset: 'high', scale: 1, set: { gi_method: method } },
+    frame_ms: { median: ms, p95: 2 * ms, frames: 9 },
+    memory_bytes: 3 << 20,
+    cold: { ms: 5 * ms, metrics: metrics(2 * flip, ssim / 2, red) },
+    converged: { ms: 50 * ms, frames: 20, settled: true, metrics: metrics(flip, ssim, red), indirect: metrics(flip, ssim, red) },
+    edit: { arrived_ms: 7 * ms },
+    pictures: { converged: `${name}.png`, strip: `${name}-strip.png` },
+  };
+}
+
+const results = {
+  setup: {
+    scene: { source: 'builtin:cornell', width: 64, height: 36 },
+    gl_renderer: 'a renderer',
+    reference: { source: 'traced', noise: 0.01, direct: true },
+    tonemap: 'hable',
+    exposure: 2,
+  },
+  metrics: [
+    { name: 'rmse', title: 'RMSE', unit: 'cd/m^2' },
+    { name: 'energy_red', title: 'energy ratio, red', unit: '' },
+    { name: 'ssim', title: 'SSIM', unit: '' },
+    { name: 'ldr_flip', title: 'LDR-FLIP', unit: '' },
+    { name: 'not_finite', title: 'pixels not finite', unit: '' },
+  ],
+  rungs: [
+    rung('none', 'none', 1, 0.5, 0.5, 0.7),
+    rung('good', 'grid', 10, 0.1, 0.9, 1.2),
+    rung('worse', 'grid', 20, 0.2, 0.95, 0.9),
+    rung('best', 'clipmap', 100, 0.05, 0.99, 1),
+  ],
+  noise: { metrics: { ldr_flip: { reference: 0.07, smallest: 0.05, enough: false } }, indirect: {} },
+};
+
+describe('the report of an accuracy run', () => {
+  let folder, browser, page;
+  const problems = [];
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), 'voxcast-report-'));
+    for (const name of ['index.html', 'report.js']) copyFileSync(source(name), join(folder, name));
+    writeFileSync(join(folder, 'results.js'), `globalThis.results = ${JSON.stringify(results)};\n`);
+    browser = await openBrowser();
+    page = browser.page;
+    page.on('pageerror', (error) => problems.push(error.message));
+    await page.goto(`file://${folder}/index.html`);
+    await page.locator('.point').first().waitFor();
+  });
+  after(async () => {
+    await browser?.close();
+    rmSync(folder, { recursive: true, force: true });
+  });
+
+  const onFront = () => page.locator('tr.on-front td:first-child').allInnerTexts();
+
+  test('draws each rung where its time and error are', async () => {
+    assert.equal(await page.locator('.point').count(), 4);
+    const places = await page
+      .locator('.point')
+      .evaluateAll((marks) => marks.map((mark) => [Number(mark.getAttribute('cx')), Number(mark.getAttribute('cy'))]));
+    const [none, good, worse, best] = places;
+    assert.ok(none[0] < good[0] && good[0] < worse[0] && worse[0] < best[0]);
+    assert.ok(none[1] < worse[1] && worse[1] < good[1] && good[1] < best[1]);
+    // Ten times the time is the same step, wherever it is.
+    assert.ok(Math.abs(good[0] - none[0] - (best[0] - good[0])) < 0.01);
+  });
+
+  test('marks the front of the chosen metric', async () => {
+    assert.deepEqual(await onFront(), ['none', 'good', 'best']);
+    await page.locator('select[name=metric]').selectOption({ label: 'SSIM' });
+    assert.deepEqual(await onFront(), ['none', 'good', 'worse', 'best']);
+    // Too dark and too bright are equally wrong; what errs not at all has no place on the chart.
+    await page.locator('select[name=metric]').selectOption({ label: 'energy ratio, red' });
+    assert.deepEqual(await onFront(), ['none', 'good', 'worse']);
+    assert.equal(await page.locator('.point').count(), 3);
+    await page.locator('select[name=metric]').selectOption({ label: 'LDR-FLIP' });
+  });
+
+  test('shows setting and picture of a point', async () => {
+    await page.locator('.point').nth(1).hover();
+    const tip = page.locator('#tip');
+    assert.match(await tip.innerText(), /good\s+preset high, gi_method grid\. 10 ms; LDR-FLIP 0\.1; 3 MiB/);
+    assert.match(await tip.locator('img').getAttribute('src'), /good\.png/);
+    await page.locator('.point').nth(3).focus();
+    assert.match(await tip.innerText(), /^best/);
+    await page.locator('.point').nth(3).press('Tab');
+  });
+
+  test('tells what the truth errs by itself', async () => {
+    assert.match(await page.locator('#noise').innerText(), /errs by 0\.07; .* 0\.05\. .*more samples/);
+    assert.equal(await page.locator('.noise').count(), 1);
+    await page.locator('select[name=metric]').selectOption({ label: 'SSIM' });
+    assert.match(await page.locator('#noise').innerText(), /not known/);
+  });
+
+  test('changes to first pictures and to other times', async () => {
+    await page.locator('select[name=metric]').selectOption({ label: 'LDR-FLIP' });
+    await page.locator('select[name=state]').selectOption({ label: 'first picture' });
+    const row = page.locator('tr', { hasText: 'good' });
+    assert.match(await row.innerText(), /0\.2/);
+    await page.locator('select[name=part]').selectOption({ label: 'indirect light alone' });
+    assert.match(await page.locator('#chart').innerHTML(), /No rung has values/);
+    await page.locator('select[name=state]').selectOption({ label: 'final picture' });
+    await page.locator('select[name=time]').selectOption({ index: 3 });
+    assert.match(await page.locator('#chart').innerHTML(), /from an edit of a light/);
+  });
+
+  test('has no serious accessibility fault', async () => {
+    await page.evaluate(axe);
+    const { violations } = await page.evaluate(() => globalThis.axe.run());
+    const bad = violations
+      .filter(({ impact }) => impact === 'serious' || impact === 'critical')
+      .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`);
+    assert.deepEqual(bad, []);
+  });
+
+  test('threw nothing', () => assert.deepEqual(problems, []));
+});
