@@ -162,7 +162,9 @@ static float resolution_scale(const struct frame *frame)
     // A reference has as many samples per pixel as it likes. While light settles no picture lasts,
     // so that those of a camera at rest are not supersampled until it has.
     bool settling = frame->volume && !frame->volume->light.converged && !frame->visibility_changed;
-    if (settling || frame->params->settings.gi_method == GI_METHOD_REFERENCE)
+    if (frame->params->settings.gi_method == GI_METHOD_REFERENCE)
+        return 1.0f;
+    if (settling)
         return fminf(frame->quality->resolution_scale, 1.0f);
     return frame->quality->resolution_scale;
 }

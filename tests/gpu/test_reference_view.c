@@ -115,7 +115,8 @@ static void test_view_shows_the_reference(void **state)
     gi_mean(fixture.pixels, EDGE, EDGE, mean);
     gi_check_ratio(&report, mean[0], mean_of_traced(), 0.05, "view by reference, %u samples",
                    fixture.samples);
-    // An edit starts it anew.
+    // An edit starts it anew; a row that draws at half the size does not matter to it.
+    fixture.params.quality = QUALITY_DRAFT;
     struct scene_material black = fixture.scene->materials[0];
     for (uint32_t i = 0; i < fixture.scene->material_count; i++) {
         black = fixture.scene->materials[i];
