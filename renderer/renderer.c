@@ -215,10 +215,11 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     if (!gi_begin_frame(&renderer->gi, frame, out_error))
         return false;
     gi_release_unused(&renderer->gi, renderer->views, renderer->view_count);
-    if (!view_prepare(view, frame->resident, frame->params, frame->plan.bits,
-                      frame->volume ? gi_gather_mode(frame) : GATHER_CACHE))
+    uint32_t width_before = view->width;
+    if (!view_prepare(view, frame))
         return error_set(out_error, "a view of %u x %u pixels does not fit into GPU memory",
                          frame->params->width, frame->params->height);
+    frame->visibility_changed = frame->visibility_changed || view->width != width_before;
     frame->width = view->width;
     frame->height = view->height;
     frame->tiles_x = (view->width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;

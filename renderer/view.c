@@ -1,6 +1,11 @@
 #include "renderer/view.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+#include "renderer/gi/gi.h"
+#include "renderer/gi/volume.h"
+#include "renderer/passes/pass.h"
 
 struct view *view_create(struct gpu *gpu)
 {
@@ -151,13 +156,23 @@ static bool prepare_indirect(struct view *view, enum gather_mode gather, uint32_
     return done;
 }
 
-bool view_prepare(struct view *view, const struct resident *resident,
-                  const struct frame_params *params, uint32_t effect_bits, enum gather_mode gather)
+// Rendered size over shown size.
+static float resolution_scale(const struct frame *frame)
 {
-    const struct quality_level *quality = &quality_levels[params->quality];
-    // A reference has as many samples per pixel as it likes.
-    bool by_reference = params->settings.gi_method == GI_METHOD_REFERENCE;
-    float scale = by_reference ? 1.0f : quality->resolution_scale;
+    // A reference has as many samples per pixel as it likes. While light settles no picture lasts,
+    // so that those of a camera at rest are not supersampled until it has.
+    bool settling = frame->volume && !frame->volume->light.converged && !frame->visibility_changed;
+    if (settling || frame->params->settings.gi_method == GI_METHOD_REFERENCE)
+        return fminf(frame->quality->resolution_scale, 1.0f);
+    return frame->quality->resolution_scale;
+}
+
+bool view_prepare(struct view *view, const struct frame *frame)
+{
+    const struct frame_params *params = frame->params;
+    const struct resident *resident = frame->resident;
+    uint32_t effect_bits = frame->plan.bits;
+    float scale = resolution_scale(frame);
     // The largest views are not supersampled beyond what GPU memory is planned for.
     if ((float)params->width * scale * (float)params->height * scale >
         (float)VIEW_MAX_WIDTH * VIEW_MAX_HEIGHT)
@@ -202,11 +217,12 @@ bool view_prepare(struct view *view, const struct resident *resident,
         gpu_buffer_destroy(&view->fragments);
         gpu_buffer_destroy(&view->transparent_tiles);
     }
-    done = done && prepare_indirect(view, gather, effect_bits);
+    done = done && prepare_indirect(view, frame->volume ? gi_gather_mode(frame) : GATHER_CACHE,
+                                    effect_bits);
     bool cascades =
         (effect_bits & EFFECT_BIT(EFFECT_SHADOWS)) && resident->directional_light != NO_SHADOW;
-    return done &&
-           prepare_cascades(view, resident->shadow_map, cascades ? quality->shadow_cascades : 0);
+    return done && prepare_cascades(view, resident->shadow_map,
+                                    cascades ? frame->quality->shadow_cascades : 0);
 }
 
 void view_bind(const struct view *view)

@@ -89,10 +89,10 @@ struct view {
 struct view *view_create(struct gpu *gpu);
 void view_destroy(struct view **view);
 
-// Makes the targets fit the sizes and effects; `gather` is GATHER_CACHE where pixels have no cones.
-// False when GPU memory ends.
-bool view_prepare(struct view *view, const struct resident *resident,
-                  const struct frame_params *params, uint32_t effect_bits, enum gather_mode gather);
+struct frame;
+
+// Makes the targets fit the frame's size, effects and gathering. False when GPU memory ends.
+bool view_prepare(struct view *view, const struct frame *frame);
 
 // Bytes of one output picture, and where its planes lie.
 size_t view_output_layout(const struct frame_params *params, size_t out_offsets[3],

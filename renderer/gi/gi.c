@@ -62,36 +62,48 @@ struct voxel_volume *gi_find(const struct gi *gi, uint64_t serial)
     return NULL;
 }
 
-static enum voxel_resolution resolution_of(const struct frame *frame)
-{
-    const struct render_settings *settings = &frame->params->settings;
-    enum voxel_resolution resolution = settings->voxel_resolution;
-    if (resolution == VOXEL_RESOLUTION_AUTO) {
-        resolution = frame->quality->voxel_resolution;
-        if (!gpu_get_info(frame->gpu)->software && resolution < VOXEL_RESOLUTION_128)
-            resolution = VOXEL_RESOLUTION_128;
-    }
-    if (settings->gi_method == GI_METHOD_CLIPMAP && resolution > VOXEL_RESOLUTION_128)
-        resolution = VOXEL_RESOLUTION_128;
-    return resolution;
-}
-
 // The cache is shared by views of different quality, so it does not depend on it.
 static enum cone_set cache_cones_of(const struct render_settings *settings)
 {
     return settings->cone_set == CONE_SET_AUTO ? CACHE_CONES : settings->cone_set;
 }
 
+static uint32_t edge_of(enum voxel_resolution resolution)
+{
+    return 32u << resolution;
+}
+
+// GPUs afford 128. On CPUs a scene that calls for several clip levels settles several times sooner
+// with 64, of which more levels make voxels as fine near the camera.
+static enum voxel_resolution automatic_resolution(const struct frame *frame,
+                                                  const struct voxel_volume_params *params)
+{
+    if (!gpu_get_info(frame->gpu)->software)
+        return VOXEL_RESOLUTION_128;
+    struct voxel_volume_params wanted = *params;
+    wanted.edge = edge_of(frame->quality->voxel_resolution);
+    bool deep = wanted.method == GI_METHOD_CLIPMAP &&
+                frame->quality->voxel_resolution > VOXEL_RESOLUTION_64 &&
+                voxel_volume_choose_clip_levels(&wanted, frame->resident) > 1;
+    return deep ? VOXEL_RESOLUTION_64 : frame->quality->voxel_resolution;
+}
+
 static struct voxel_volume_params volume_params(const struct frame *frame)
 {
     const struct render_settings *settings = &frame->params->settings;
-    return (struct voxel_volume_params){
+    struct voxel_volume_params params = {
         .method = settings->gi_method,
-        .edge = 32u << resolution_of(frame),
         .clip_levels = settings->gi_method == GI_METHOD_CLIPMAP ? settings->clip_levels : 0,
         .directions = settings->voxel_directions,
         .cache_cones = cone_set_count(cache_cones_of(settings)),
     };
+    enum voxel_resolution resolution = settings->voxel_resolution;
+    if (resolution == VOXEL_RESOLUTION_AUTO)
+        resolution = automatic_resolution(frame, &params);
+    if (params.method == GI_METHOD_CLIPMAP && resolution > VOXEL_RESOLUTION_128)
+        resolution = VOXEL_RESOLUTION_128;
+    params.edge = edge_of(resolution);
+    return params;
 }
 
 static bool same_params(const struct voxel_volume_params *a, const struct voxel_volume_params *b)

@@ -10,7 +10,9 @@
 // the scene's bounds away from the faces of voxels, where they would fill both sides.
 #define MARGIN_VOXELS 4.0
 #define ANCHOR_OFFSET (1.0 / 3.0)
-#define TILE_CAPACITY 65535u
+// Of the finest level along a typical object.
+#define TYPICAL_OBJECT_VOXELS 64.0f
+#define TILE_CAPACITY         65535u
 
 static uint32_t log2_of(uint32_t edge)
 {
@@ -142,15 +144,21 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// As many levels as it takes for the coarsest to cover the scene while the finest resolves a
-// typical object: its extent against the scene's, so that the scene's unit does not matter.
-static uint32_t choose_levels(const struct voxel_volume *volume, const struct resident *resident,
-                              float extent)
+static float extent_of(const struct resident *resident)
 {
-    uint32_t most = volume->params.edge <= 64 ? 4 : CLIP_MAX_LEVELS;
-    if (volume->params.clip_levels > 0)
-        return volume->params.clip_levels < CLIP_MAX_LEVELS ? volume->params.clip_levels
-                                                            : CLIP_MAX_LEVELS;
+    float extent = 0.0f;
+    for (int axis = 0; axis < 3; axis++)
+        extent = fmaxf(extent, resident->bounds_max[axis] - resident->bounds_min[axis]);
+    return extent > 0.0f && isfinite(extent) ? extent : 1.0f;
+}
+
+uint32_t voxel_volume_choose_clip_levels(const struct voxel_volume_params *params,
+                                         const struct resident *resident)
+{
+    uint32_t most = params->edge <= 64 ? 4 : CLIP_MAX_LEVELS;
+    if (params->clip_levels > 0)
+        return params->clip_levels < CLIP_MAX_LEVELS ? params->clip_levels : CLIP_MAX_LEVELS;
+    float extent = extent_of(resident);
     float *extents = malloc((resident->counts.instances + 1) * sizeof(*extents));
     uint32_t count = 0;
     for (uint32_t i = 0; extents && i < resident->counts.instances; i++) {
@@ -167,7 +175,8 @@ static uint32_t choose_levels(const struct voxel_volume *volume, const struct re
         typical = extents[count / 2];
     }
     free(extents);
-    float levels = 1.0f + roundf(log2f(extent / typical));
+    float wanted = TYPICAL_OBJECT_VOXELS / (float)params->edge;
+    float levels = 1.0f + roundf(log2f(extent / typical * wanted));
     return (uint32_t)fminf(fmaxf(levels, 1.0f), (float)most);
 }
 
@@ -175,18 +184,15 @@ static uint32_t choose_levels(const struct voxel_volume *volume, const struct re
 static bool lay_out(struct voxel_volume *volume, const struct resident *resident)
 {
     bool clipmap = volume->params.method == GI_METHOD_CLIPMAP;
-    float extent = 0.0f;
     for (int axis = 0; axis < 3; axis++) {
         float low = resident->bounds_min[axis], high = resident->bounds_max[axis];
         bool finite = isfinite(low) && isfinite(high);
         volume->bounds_min[axis] = finite ? low : 0.0f;
         volume->bounds_max[axis] = finite ? high : 0.0f;
-        extent = fmaxf(extent, volume->bounds_max[axis] - volume->bounds_min[axis]);
     }
-    if (!(extent > 0.0f) || !isfinite(extent))
-        extent = 1.0f;
+    float extent = extent_of(resident);
     uint32_t edge = volume->params.edge;
-    uint32_t lit_levels = clipmap ? choose_levels(volume, resident, extent) : 1;
+    uint32_t lit_levels = clipmap ? voxel_volume_choose_clip_levels(&volume->params, resident) : 1;
     bool same = volume->radiance && lit_levels == volume->lit_levels;
     // A single level has mips down to 8^3; several are each other's.
     uint32_t levels = lit_levels > 1 ? lit_levels : 1 + log2_of(edge) - 3;

@@ -19,6 +19,12 @@ struct voxel_volume_params {
     uint32_t cache_cones; // per voxel face
 };
 
+// How many levels a clipmap of these parameters has: as many as it takes for the coarsest to cover
+// the scene while the finest resolves a typical object. Goes by ratios of extents, so that the
+// scene's unit does not matter. Looks at every instance.
+uint32_t voxel_volume_choose_clip_levels(const struct voxel_volume_params *params,
+                                         const struct resident *resident);
+
 struct voxel_level {
     uint32_t edge;
     double voxel_edge_m;
