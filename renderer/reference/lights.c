@@ -3,9 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/reference/light_grid.h"
+
 // The renderer's: nearer than this to a light (1 mm) the inverse square no longer grows.
 #define MIN_LIGHT_DISTANCE_SQUARED 1e-6f
-// Of more lights than these, so many are picked by their power before one is chosen.
+// Of more lights than these, a grid tells which reach a point.
+#define FEW_PUNCTUALS 8u
+// Where there is no grid, so many are picked by their power before one is chosen.
 #define MAX_CANDIDATES 64u
 // Of as few emitters a random number has bits enough to choose one and a place on it.
 #define FEW_EMITTERS 32u
@@ -37,6 +41,7 @@ struct emitter {
 struct lights {
     struct punctual *punctuals;
     uint32_t punctual_count;
+    struct light_grid grid; // of punctual lights
     struct emitter *emitters;
     float *power_ends; // by emitter: cumulative share of power
     uint32_t emitter_count;
@@ -65,6 +70,27 @@ static void add_punctual(struct lights *lights, const struct snapshot *snapshot,
     };
 }
 
+static bool make_grid(struct lights *lights, const struct scene *scene)
+{
+    double low[3] = {0}, high[3] = {0};
+    float3 from = splat3(0.0f), to = splat3(0.0f);
+    scene_bounds(scene, low, high);
+    struct light_reach *reaches =
+        aligned_alloc(16, lights->punctual_count * sizeof(struct light_reach));
+    if (!reaches)
+        return false;
+    for (uint32_t i = 0; i < lights->punctual_count; i++)
+        reaches[i] =
+            (struct light_reach){lights->punctuals[i].position, lights->punctuals[i].range_m};
+    for (int axis = 0; axis < 3; axis++) {
+        from[axis] = (float)low[axis];
+        to[axis] = (float)high[axis];
+    }
+    bool done = light_grid_init(&lights->grid, from, to, reaches, lights->punctual_count);
+    free(reaches);
+    return done;
+}
+
 static bool find_punctuals(struct lights *lights, const struct snapshot *snapshot)
 {
     const struct scene *scene = snapshot->scene;
@@ -84,7 +110,7 @@ static bool find_punctuals(struct lights *lights, const struct snapshot *snapsho
         sum += (double)luminance3(lights->punctuals[i].intensity);
         lights->punctuals[i].power_end = (float)(sum / total);
     }
-    return true;
+    return lights->punctual_count <= FEW_PUNCTUALS || make_grid(lights, scene);
 }
 
 // False if the triangle has no area.
@@ -187,6 +213,7 @@ void lights_destroy(struct lights **lights)
 {
     if (*lights) {
         free((*lights)->punctuals);
+        light_grid_finish(&(*lights)->grid);
         free((*lights)->emitters);
         free((*lights)->power_ends);
     }
@@ -231,14 +258,14 @@ static bool evaluate_punctual(const struct punctual *light, float3 position,
         return true;
     }
     float3 to_light = light->position - position;
-    float squared = dot3(to_light, to_light);
-    if (!(squared > 0.0f))
+    float squared = dot3(to_light, to_light), range2 = light->range_m * light->range_m;
+    if (!(squared > 0.0f) || (range2 > 0.0f && squared >= range2))
         return false;
     out_sample->distance = sqrtf(squared);
     out_sample->direction = to_light * (1.0f / out_sample->distance);
     float strength = 1.0f / max1(squared, MIN_LIGHT_DISTANCE_SQUARED);
     if (light->range_m > 0.0f) {
-        float ratio = squared / (light->range_m * light->range_m);
+        float ratio = squared / range2;
         strength *= clamp01(1.0f - ratio * ratio);
     }
     strength *= spot_falloff(light, out_sample->direction);
@@ -313,14 +340,17 @@ bool lights_sample_punctual(const struct lights *lights, float3 position, float3
                             struct light_sample *out_sample)
 {
     // One pass: each light replaces the chosen one with the probability of its share so far. Of
-    // many lights only candidates are looked at, and count for those that are not (Talbot et al.
-    // 2005, "Importance Resampling for Global Illumination").
-    bool many = lights->punctual_count > MAX_CANDIDATES;
-    uint32_t candidates = many ? MAX_CANDIDATES : lights->punctual_count, chosen = UINT32_MAX;
+    // many lights only those are looked at that reach here, or candidates that count for the others
+    // (Talbot et al. 2005, "Importance Resampling for Global Illumination").
+    const uint32_t *near = NULL;
+    uint32_t candidates = lights->punctual_count, chosen = UINT32_MAX;
+    bool located = light_grid_find(&lights->grid, position, &near, &candidates);
+    bool many = !located && candidates > MAX_CANDIDATES;
+    candidates = many ? MAX_CANDIDATES : candidates;
     float total = 0.0f, chosen_weight = 0.0f, left = choice[0];
     for (uint32_t i = 0; i < candidates; i++) {
         float scale = 1.0f;
-        uint32_t id = many ? pick_candidate(lights, i, choice[1], &scale) : i;
+        uint32_t id = many ? pick_candidate(lights, i, choice[1], &scale) : located ? near[i] : i;
         struct light_sample sample = {0};
         if (!evaluate_punctual(&lights->punctuals[id], position, &sample))
             continue;

@@ -3,7 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
 // Camera and scene rest when they have been the same for so long.
 #define REST_MS 150.0
@@ -11,6 +13,8 @@
 // the last: drawing and encoding take their time from tracing.
 #define SAMPLES_STEP 1.2
 #define INTERVAL_MS  100.0
+// Of the builder, as of a reference's workers.
+#define LOWEST_PRIORITY 19
 // Good enough, or as far as it goes.
 #define WANTED_NOISE   0.01
 #define WANTED_SAMPLES 16384u
@@ -26,7 +30,7 @@ static void *build(void *context)
 {
     struct live_scene *scene = context;
     struct error ignored;
-    pthread_setschedparam(pthread_self(), SCHED_IDLE, &(struct sched_param){0});
+    setpriority(PRIO_PROCESS, (id_t)gettid(), LOWEST_PRIORITY);
     bool done = snapshot_build(scene->snapshot, true, &ignored);
     __atomic_store_n(&scene->built, done ? 1 : -1, __ATOMIC_RELEASE);
     return NULL;

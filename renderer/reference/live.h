@@ -11,7 +11,7 @@
 #include "renderer/scene/scene.h"
 
 // Snapshots of a document, shared by its views; at most one at a time. They are built by a thread
-// of their own at idle priority. Zero means none.
+// of their own at lowest priority. Zero means none.
 struct live_scene {
     struct snapshot *snapshot; // NULL for none; being built while `builds`
     uint64_t scene_number;

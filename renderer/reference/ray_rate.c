@@ -25,10 +25,10 @@ struct bare_loop {
     uint64_t hits;
 };
 
-static double now_seconds(void)
+static double now_seconds(clockid_t clock)
 {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
@@ -104,18 +104,19 @@ static void *cast_chunks(void *context)
 }
 
 // False if a thread cannot be had.
-static bool cast_bare(const struct ray_rate *rate, double *out_seconds)
+static bool cast_bare(const struct ray_rate *rate, struct ray_rate_result *result)
 {
     struct bare_loop loop = {.rate = rate, .count = rate->rays.nearest + rate->rays.shadow};
     pthread_t threads[REFERENCE_MAX_THREADS];
     uint32_t started = 0;
-    double from = now_seconds();
+    double from = now_seconds(CLOCK_MONOTONIC), cpu = now_seconds(CLOCK_PROCESS_CPUTIME_ID);
     while (started < rate->params.threads && started < REFERENCE_MAX_THREADS &&
            pthread_create(&threads[started], NULL, cast_chunks, &loop) == 0)
         started++;
     for (uint32_t i = 0; i < started; i++)
         pthread_join(threads[i], NULL);
-    *out_seconds = now_seconds() - from;
+    result->bare_seconds = now_seconds(CLOCK_MONOTONIC) - from;
+    result->bare_cpu_seconds = now_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
     return started == rate->params.threads;
 }
 
@@ -127,9 +128,10 @@ bool ray_rate_measure(struct ray_rate *rate, struct ray_rate_result *out_result,
     struct reference *reference = reference_create(&rate->params, out_error);
     if (!reference)
         return false;
-    double from = now_seconds();
+    double from = now_seconds(CLOCK_MONOTONIC), cpu = now_seconds(CLOCK_PROCESS_CPUTIME_ID);
     reference_render(reference, rate->samples);
-    out_result->reference_seconds = now_seconds() - from;
+    out_result->reference_seconds = now_seconds(CLOCK_MONOTONIC) - from;
+    out_result->reference_cpu_seconds = now_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
     reference_destroy(&reference);
-    return cast_bare(rate, &out_result->bare_seconds) || error_set(out_error, "not enough threads");
+    return cast_bare(rate, out_result) || error_set(out_error, "not enough threads");
 }

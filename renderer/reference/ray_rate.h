@@ -13,9 +13,9 @@ struct ray_rate *ray_rate_create(const struct reference_params *params, uint32_t
 void ray_rate_destroy(struct ray_rate **rate);
 
 struct ray_rate_result {
-    uint64_t nearest_rays, shadow_rays; // of the picture
-    double bare_seconds;
-    double reference_seconds;
+    uint64_t nearest_rays, shadow_rays;             // of the picture
+    double bare_seconds, reference_seconds;         // of the wall clock
+    double bare_cpu_seconds, reference_cpu_seconds; // of all processors: on a busy machine, too
 };
 
 // Casts all rays both ways, with as many threads as the reference has. False with a message when

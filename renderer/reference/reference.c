@@ -7,6 +7,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -15,6 +16,8 @@
 #define TILE_EDGE 8u
 // Samples per pixel that a tile gets at a time, at most: tiles advance together.
 #define MAX_STEP 16u
+// A share of a processor that others hardly notice, but never none.
+#define LOWEST_PRIORITY 19
 // Alpha, of the pictures: nothing here is transparent.
 #define OPAQUE 1.0f
 
@@ -186,7 +189,7 @@ static void *worker(void *context)
 {
     struct reference *reference = context;
     if (reference->low_priority)
-        pthread_setschedparam(pthread_self(), SCHED_IDLE, &(struct sched_param){0});
+        setpriority(PRIO_PROCESS, (id_t)gettid(), LOWEST_PRIORITY);
     struct work *work = malloc(sizeof(*work));
     pthread_mutex_lock(&reference->mutex);
     while (!reference->quits && work) {

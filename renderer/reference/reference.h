@@ -77,7 +77,7 @@ struct reference_params {
     uint64_t seed;
     enum reference_estimator estimator;
     uint32_t threads;  // 0: as many as there are processors
-    bool low_priority; // workers run when nothing else wants to (SCHED_IDLE)
+    bool low_priority; // workers give way to all others (nice 19)
     bool pixel_center; // rays through pixel centres; else all over the pixels (box filter)
 };
 

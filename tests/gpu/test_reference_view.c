@@ -15,7 +15,7 @@
 #include "support_gi_scenes.h"
 
 #define EDGE    48u
-#define WAIT_MS 20000
+#define WAIT_MS 60000
 #define POLL_US 5000
 #define SAMPLES 8u
 #define PIXELS  ((size_t)EDGE * EDGE)

@@ -330,6 +330,44 @@ static void test_caustic_of_a_point(void **state)
     scene_destroy(&scene);
 }
 
+// Many lamps over a floor give the sum of what each gives: those of a range by way of the grid that
+// tells which reach a point, very many without one by way of candidates.
+static void test_many_lamps_sum_up(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t count;
+        float range_m;
+    } cases[] = {{100, 0.0f}, {400, 1.7f}, {2000, 0.0f}};
+    for (int i = 0; i < 3; i++) {
+        struct scene *scene = support_scene_create();
+        uint32_t floor = support_add_matte(scene, 0.6f);
+        support_add_floor(scene, floor, (float[2]){-5, -5}, (float[2]){5, 5}, 0.0f, false);
+        uint32_t edge = (uint32_t)ceil(sqrt((double)cases[i].count));
+        double expected = 0.0;
+        for (uint32_t j = 0; j < cases[i].count; j++) {
+            struct scene_light light;
+            scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
+            light.intensity = 1.0f + (float)(j % 7);
+            light.range_m = cases[i].range_m;
+            float x = 9.0f * ((float)(j % edge) / (float)edge - 0.5f) + 0.3f;
+            float y = 9.0f * ((float)(j / edge) / (float)edge - 0.5f) + 0.2f;
+            scene_add_light(scene, &light, (float[3]){x, y, 1}, (float[3]){0, 0, -1});
+            double squared = (double)x * x + (double)y * y + 1.0;
+            double ratio =
+                cases[i].range_m > 0.0f ? squared / pow((double)cases[i].range_m, 2.0) : 0.0;
+            expected += 0.6 / M_PI * light.intensity * fmax(1.0 - ratio * ratio, 0.0) /
+                        (squared * sqrt(squared));
+        }
+        struct reference_params params =
+            support_narrow_view((float[3]){0, 0, 0.9f}, (float[3]){0, 0, 0});
+        params.max_bounces = 0;
+        support_assert_ratio(mean_red(scene, &params, 1024, REFERENCE_ALL_LAYERS), expected, 0.01,
+                             "many lamps");
+        scene_destroy(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -343,6 +381,7 @@ int main(void)
         cmocka_unit_test(test_lamps_of_a_size),
         cmocka_unit_test(test_blinn_phong),
         cmocka_unit_test(test_caustic_of_a_point),
+        cmocka_unit_test(test_many_lamps_sum_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
