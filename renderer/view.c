@@ -159,11 +159,13 @@ static bool prepare_indirect(struct view *view, enum gather_mode gather, uint32_
 // Rendered size over shown size.
 static float resolution_scale(const struct frame *frame)
 {
-    // A reference has as many samples per pixel as it likes. While light settles no picture lasts,
-    // so that those of a camera at rest are not supersampled until it has.
-    bool settling = frame->volume && !frame->volume->light.converged && !frame->visibility_changed;
+    // A reference has as many samples per pixel as it likes.
     if (frame->params->settings.gi_method == GI_METHOD_REFERENCE)
         return 1.0f;
+    // While light settles no picture lasts, so that those of a camera at rest are not supersampled
+    // until it has; unless pixels are what asks for light.
+    bool settling = frame->volume && !frame->volume->light.converged &&
+                    !frame->visibility_changed && frame_has(frame, EFFECT_BOUNCE);
     if (settling)
         return fminf(frame->quality->resolution_scale, 1.0f);
     return frame->quality->resolution_scale;

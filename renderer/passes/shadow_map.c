@@ -11,7 +11,7 @@
 // A cascade is drawn again once the camera is this far from its centre, in half-edges.
 #define CASCADE_MARGIN 0.25f
 // Slope-scaled bias (glPolygonOffset) away from the light, reversed Z.
-#define BIAS_SLOPE    -1.5f
+#define BIAS_SLOPE    -2.5f
 #define BIAS_CONSTANT -2.0f
 
 static void place_cascade(struct frame *frame, uint32_t i)

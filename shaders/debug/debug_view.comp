@@ -61,10 +61,9 @@ vec3 cascade_color(surface s)
 #if FLAT_SHADOWS
     if (frame.lights.w == 0u)
         return vec3(0.35 + 0.65 * clamp(dot(s.normal, s.view), 0.0, 1.0));
-    bool inside;
     uint view_number = frame.options.y;
-    vec4 at = project_to_shadow(view_number, s.position, s.geometric_normal, s.geometric_normal,
-                                inside);
+    shadow_place at =
+        project_to_shadow(view_number, s.position, s.geometric_normal, s.geometric_normal);
     uint cascade = refine_by_cascade(at);
     const vec3 colors[4] = {vec3(1.0, 0.35, 0.3), vec3(0.4, 1.0, 0.4), vec3(0.4, 0.55, 1.0),
                             vec3(1.0, 0.9, 0.4)};

@@ -38,43 +38,57 @@ float filtered_comparison(vec4 at)
 float offset_texels(vec3 normal, vec3 to_light)
 {
     float cosine = clamp(dot(normal, to_light), 0.0, 1.0);
-    return 0.6 + 1.8 * sqrt(1.0 - cosine * cosine);
+    return 0.1 + 0.2 * sqrt(1.0 - cosine * cosine);
 }
 
 bool is_inside(vec2 uv)
 {
-    float margin = 3.0 / float(textureSize(shadow_map, 0).x);
+    // As far as the lift along the normal and the filter reach.
+    float margin = 5.0 / float(textureSize(shadow_map, 0).x);
     return all(greaterThan(uv, vec2(margin))) && all(lessThan(uv, vec2(1.0 - margin)));
 }
 
 #if FLAT_SHADOWS
-// Position in a spot's or sun's view: uv, layer, reversed depth. `inside` tells whether it is seen.
-vec4 project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light,
-                       out bool inside)
+// A place in a shadow view: uv, layer, reversed depth; how lifting it off its surface moves it there;
+// and whether the view sees it.
+struct shadow_place {
+    vec4 at;
+    vec3 lift;
+    bool inside;
+};
+
+// Position in a spot's or sun's view.
+shadow_place project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light)
 {
     mat4 clip_from_world = shadow_views[view_number].clip_from_world;
     vec4 texel = shadow_views[view_number].texel;
     vec4 clip = clip_from_world * vec4(position, 1.0);
     float size = texel.x * (texel.w > 0.0 ? max(clip.w, 0.0) : 1.0);
-    clip += clip_from_world * vec4(normal * (size * offset_texels(normal, to_light)), 0.0);
-    vec3 ndc = clip.xyz / max(clip.w, 1e-20);
-    vec2 uv = vec2(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
-    inside = clip.w > 0.0 && is_inside(uv);
-    return vec4(uv, float(view_number), ndc.z);
+    vec4 lifted =
+        clip + clip_from_world * vec4(normal * (size * offset_texels(normal, to_light)), 0.0);
+    const vec3 uv_from_ndc = vec3(0.5, -0.5, 1.0);
+    vec3 plain = clip.xyz / max(clip.w, 1e-20) * uv_from_ndc + vec3(0.5, 0.5, 0.0);
+    vec3 moved = lifted.xyz / max(lifted.w, 1e-20) * uv_from_ndc + vec3(0.5, 0.5, 0.0);
+    shadow_place place;
+    place.at = vec4(plain.xy, float(view_number), plain.z);
+    place.lift = moved - plain;
+    place.inside = clip.w > 0.0 && is_inside(plain.xy);
+    return place;
 }
 
 // Refines a place in the sun's map of the whole scene to the smallest of the view's cascades that
-// holds it. All share the sun's axes, so a cascade is a scale and an offset. Returns its number,
-// frame.lights.w for none.
-uint refine_by_cascade(inout vec4 at)
+// holds it, where texels are smaller and so is the lift. All share the sun's axes, so a cascade is a
+// scale and an offset. Returns its number, frame.lights.w for none.
+uint refine_by_cascade(inout shadow_place place)
 {
     uint found = frame.lights.w;
-    vec4 from = at;
+    shadow_place from = place;
     for (uint i = frame.lights.w; i-- > 0u;) {
         vec4 scale = frame.cascade_scales[i];
-        vec3 place = from.xyw * scale.xyz + frame.cascade_offsets[i].xyz;
-        if (is_inside(place.xy)) {
-            at = vec4(place.xy, scale.w, place.z);
+        vec3 at = from.at.xyw * scale.xyz + frame.cascade_offsets[i].xyz;
+        if (is_inside(at.xy)) {
+            place.at = vec4(at.xy, scale.w, at.z);
+            place.lift = from.lift * (scale.xyz / scale.x);
             found = i;
         }
     }
@@ -115,11 +129,13 @@ float shadow_visibility(uvec4 shadow, vec3 origin, vec3 position, vec3 normal, v
     bool inside = true;
 #if FLAT_SHADOWS
     if (shadow.y == 1u) {
-        at = project_to_shadow(shadow.x, position, normal, to_light, inside);
+        shadow_place place = project_to_shadow(shadow.x, position, normal, to_light);
 #ifndef VIEWLESS // cascades are a view's own
         if (shadow.w != 0u)
-            refine_by_cascade(at);
+            refine_by_cascade(place);
 #endif
+        at = place.at + vec4(place.lift.xy, 0.0, place.lift.z);
+        inside = place.inside;
     }
 #endif
 #if CUBE_SHADOWS

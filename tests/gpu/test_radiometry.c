@@ -269,6 +269,35 @@ static void test_shadow_blocks_all_light(void **state)
     }
 }
 
+// A plate of 4 cm, 3 cm above a floor of 60 m, as eaves and ledges are in a building: the sun's
+// cascades resolve it, so the offset against acne must be of their texels.
+static void test_small_things_cast_shadows_in_large_scenes(void **state)
+{
+    (void)state;
+    struct scene *scene = test_square_scene(30.0f, 0.5f);
+    uint32_t node = scene_add_node(scene, "plate", SCENE_NONE);
+    scene->nodes[node].mesh = 0;
+    const float size = 0.02f / 30.0f;
+    scene_set_node_transform(scene, node, (float[3]){0.03f, 0, 0.03f}, (float[4]){0, 0, 0, 1},
+                             (float[3]){size, size, 1.0f});
+    struct scene_light light;
+    scene_light_init(&light, SCENE_LIGHT_DIRECTIONAL, "sun");
+    light.intensity = 10.0f;
+    scene_add_light(scene, &light, (float[3]){0, 0, 5}, (float[3]){-1, 0, -1});
+    struct frame_params params = test_params(33, 33, FRAME_OUTPUT_LINEAR);
+    params.quality = QUALITY_FINAL;
+    params.camera.fov_y_rad = 0.002f;
+    test_look_down_z(&params, 1.0f);
+    for (int visible = 0; visible < 2; visible++) {
+        scene_set_node_visible(scene, node, visible);
+        struct test_picture picture = test_draw_linear(scene, &params);
+        double lit = test_center(&picture) / (0.5 / M_PI * 10.0 * sqrt(0.5));
+        free(picture.pixels);
+        assert_true(visible ? lit < 0.01 : fabs(lit - 1.0) < TOLERANCE);
+    }
+    scene_destroy(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -282,6 +311,7 @@ int main(void)
         cmocka_unit_test(test_metal_under_a_sky_shows_its_albedo),
         cmocka_unit_test(test_a_thousand_lights_add_up),
         cmocka_unit_test(test_shadow_blocks_all_light),
+        cmocka_unit_test(test_small_things_cast_shadows_in_large_scenes),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);
 }

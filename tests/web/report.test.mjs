@@ -23,6 +23,7 @@ function rung(name, method, ms, flip, ssim, red) {
     method,
     settings: { preset: 'high', scale: 1, set: { gi_method: method } },
     frame_ms: { median: ms, p95: 2 * ms, frames: 9 },
+    pass_ms: { gbuffer: 0.2 * ms, voxelize: 0.7 * ms },
     memory_bytes: 3 << 20,
     cold: { ms: 5 * ms, metrics: metrics(2 * flip, ssim / 2, red) },
     converged: { ms: 50 * ms, frames: 20, settled: true, metrics: metrics(flip, ssim, red), indirect: metrics(flip, ssim, red) },
@@ -107,6 +108,13 @@ describe('the report of an accuracy run', () => {
     await page.locator('.point').nth(3).focus();
     assert.match(await tip.innerText(), /^best/);
     await page.locator('.point').nth(3).press('Tab');
+  });
+
+  test('opens the pictures of a point, with the times of its passes', async () => {
+    await page.locator('.point').nth(1).click();
+    const strip = page.locator('#strip-good');
+    assert.match(await strip.locator('img').getAttribute('src'), /good-strip\.png/);
+    assert.match(await strip.innerText(), /voxelize 7, gbuffer 2\./);
   });
 
   test('tells what the truth errs by itself', async () => {

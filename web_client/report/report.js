@@ -227,7 +227,10 @@
       picture.loading = 'lazy';
       picture.src = rung.pictures.strip;
       picture.alt = `Truth, first picture, final picture and error of ${rung.name}`;
-      strip.append(summary, picture);
+      const passes = document.createElement('p');
+      const times = Object.entries(rung.pass_ms ?? {}).sort(([, a], [, b]) => b - a);
+      passes.textContent = `Median ms of passes: ${times.map(([name, ms]) => `${name} ${short(ms)}`).join(', ')}.`;
+      strip.append(summary, picture, passes);
       place.append(strip);
     }
   }
