@@ -41,7 +41,8 @@ enum cone_set {
     CONE_SET_COUNT
 };
 
-// Where diffuse cones start: at voxel faces only, at every other pixel, at every pixel.
+// Where diffuse cones start: at voxel faces only (as auto has it: against the path tracer it is
+// both the most exact and by far the cheapest), at every other pixel, at every pixel.
 enum gather_mode { GATHER_AUTO, GATHER_CACHE, GATHER_HALF, GATHER_PIXEL, GATHER_COUNT };
 
 // How many clip levels are relit in a frame.
@@ -147,11 +148,9 @@ struct quality_level {
     enum voxel_resolution voxel_resolution; // on a GPU at least 128
     enum cone_set cone_set;
     float cone_step;
-    enum gather_mode gather_mode;
     bool soft_shadows;
     float specular_roughness;   // rougher surfaces reflect as if by the cached irradiance
     float specular_reflectance; // and so do those that reflect less than this head-on
-    uint32_t still_frames;      // pictures with turned cones that are averaged when nothing moves
 };
 
 extern const struct quality_level quality_levels[QUALITY_COUNT];

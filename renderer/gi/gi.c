@@ -15,6 +15,8 @@
 #define SCALE_DECAY  64.0f
 // Ambient occlusion counts what is nearer than this share of the scene's diagonal.
 #define OCCLUSION_SHARE 0.05f
+// Pictures of a camera at rest that are averaged where pixels gather.
+#define GATHERED_PICTURES 4u
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
@@ -239,7 +241,7 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
 enum gather_mode gi_gather_mode(const struct frame *frame)
 {
     enum gather_mode chosen = frame->params->settings.gather_mode;
-    return chosen == GATHER_AUTO ? frame->quality->gather_mode : chosen;
+    return chosen == GATHER_AUTO ? GATHER_CACHE : chosen;
 }
 
 // Pixels gather once the light has settled; until then they show the cache. While nothing moves
@@ -254,7 +256,7 @@ static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
     frame->still_count = 1;
     if (frame->gather == GATHER_CACHE)
         return;
-    frame->still_frames = frame->quality->still_frames > 0 ? frame->quality->still_frames : 1;
+    frame->still_frames = GATHERED_PICTURES;
     if (!volume->light.converged) {
         frame->gather = GATHER_CACHE;
         frame->still_count = 0;
