@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "renderer/clock.h"
 #include "renderer/camera.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
@@ -30,13 +30,6 @@ struct renderer {
     struct scene_revisions ray_revisions;
     struct live_scene live_scene; // of references
 };
-
-static double now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
 
 static const char *find_shader_dir(const struct renderer_params *params)
 {
@@ -312,7 +305,7 @@ static float view_convergence(const struct frame *frame)
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error)
 {
-    double started_ms = now_ms();
+    double started_ms = clock_now_ms();
     if (!params_are_valid(params, out_error))
         return RENDER_FAILED;
     if (!renderer->resident) {
@@ -425,7 +418,7 @@ bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wa
     collect_light(renderer, view, slot, bytes + size_bytes + VIEW_EXPOSURE_BYTES);
     for (int i = 0; i < (shape.output == FRAME_OUTPUT_YCBCR ? 3 : 1); i++)
         slot->result.planes[i] = bytes + offsets[i];
-    slot->result.frame_time_ms = now_ms() - slot->started_ms;
+    slot->result.frame_time_ms = clock_now_ms() - slot->started_ms;
     view->last_frame_ms = slot->result.frame_time_ms;
     view->collected = true;
     *out_pixels = slot->result;

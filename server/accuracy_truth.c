@@ -134,7 +134,7 @@ static void trace(const struct truth_params *params, const struct halves *halves
 {
     bool until_noise = params->until_noise > 0.0;
     uint32_t wanted = until_noise ? MOST_SAMPLES : params->samples, samples = 0;
-    double started_ms = bench_now_ms(), last_news_s = 0.0;
+    double started_ms = clock_now_ms(), last_news_s = 0.0;
     *out_noise = INFINITY;
     while (samples < wanted && !(*out_noise <= params->until_noise)) {
         uint32_t missing = (wanted - samples + 1) / 2;
@@ -142,7 +142,7 @@ static void trace(const struct truth_params *params, const struct halves *halves
             reference_render(halves->references[i],
                              missing < SAMPLES_AT_ONCE ? missing : SAMPLES_AT_ONCE);
         get_progress(halves, &samples, out_noise);
-        double elapsed_s = 1e-3 * (bench_now_ms() - started_ms);
+        double elapsed_s = 1e-3 * (clock_now_ms() - started_ms);
         if (elapsed_s - last_news_s < SECONDS_PER_NEWS)
             continue;
         last_news_s = elapsed_s;

@@ -96,10 +96,10 @@ static bool climb(const struct accuracy *accuracy, const struct ladder *ladder, 
     uint32_t left = 0, measured = 0;
     for (uint32_t i = 0; i < ladder->rung_count; i++)
         left += results_find(results, &ladder->rungs[i]) == NULL;
-    double started_ms = bench_now_ms();
+    double started_ms = clock_now_ms();
     for (uint32_t i = 0; i < ladder->rung_count; i++) {
         const struct rung *rung = &ladder->rungs[i];
-        double rung_started_ms = bench_now_ms();
+        double rung_started_ms = clock_now_ms();
         if (results_find(results, rung))
             continue;
         cJSON *entry = accuracy_measure(accuracy, rung, out_error);
@@ -110,7 +110,7 @@ static bool climb(const struct accuracy *accuracy, const struct ladder *ladder, 
             return false;
         left--;
         measured++;
-        double now_ms = bench_now_ms();
+        double now_ms = clock_now_ms();
         print_progress(ladder->rung_count - left, ladder->rung_count, rung->name,
                        1e-3 * (now_ms - rung_started_ms),
                        1e-3 * (now_ms - started_ms) / measured * left);

@@ -54,17 +54,17 @@ static bool bench_scene(struct renderer *renderer, const char *source,
                         const struct bench_options *options, struct cJSON *list,
                         struct error *out_error)
 {
-    double started_ms = bench_now_ms();
+    double started_ms = clock_now_ms();
     struct scene *scene = scene_load(source, out_error);
     if (!scene)
         return false;
-    double loaded_ms = bench_now_ms();
+    double loaded_ms = clock_now_ms();
     struct cJSON *entry = cJSON_CreateObject();
     cJSON_AddItemToArray(list, entry);
     cJSON_AddStringToObject(entry, "name", source);
     bool done = renderer_set_scene(renderer, scene, out_error);
     cJSON_AddNumberToObject(entry, "load_ms", round(loaded_ms - started_ms));
-    cJSON_AddNumberToObject(entry, "upload_ms", round(bench_now_ms() - loaded_ms));
+    cJSON_AddNumberToObject(entry, "upload_ms", round(clock_now_ms() - loaded_ms));
     done = done && measure(renderer, scene, options, entry, out_error);
     struct error ignored;
     renderer_set_scene(renderer, NULL, &ignored);

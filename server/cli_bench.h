@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "server/cli.h"
+#include "server/clock.h"
 
 struct bench_run {
     struct renderer *renderer;
@@ -23,8 +24,6 @@ struct bench_result {
     uint32_t converge_frames;           // as many as were needed
     float convergence;                  // of the newest frame
 };
-
-double bench_now_ms(void);
 
 // Draws and measures in a view of its own. The result is to be finished in any case.
 bool bench_measure(const struct bench_run *run, struct bench_result *out_result,

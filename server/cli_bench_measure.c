@@ -5,17 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define SWAY_STEP_RAD 0.03f
 #define SWAY_RAD      0.3f
-
-double bench_now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
 
 // Turns the eye about the vertical through the target.
 static void sway_camera(const struct view_camera *from, uint32_t frame, struct view_camera *to)

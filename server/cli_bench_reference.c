@@ -82,13 +82,13 @@ static bool bench_scene(const struct reference_bench *bench, const char *source,
     struct reference_params params = {
         .width = bench->size.width, .height = bench->size.height, .threads = bench->threads};
     cli_default_camera(scene, (float)params.width / (float)params.height, &params.camera);
-    double started_ms = bench_now_ms();
+    double started_ms = clock_now_ms();
     params.scene = snapshot_create(scene, false, out_error);
     cJSON *entry = cJSON_CreateObject();
     cJSON_AddItemToArray(list, entry);
     cJSON_AddStringToObject(entry, "name", source);
     cJSON_AddNumberToObject(entry, "triangles", (double)scene_triangle_count(scene));
-    cJSON_AddNumberToObject(entry, "snapshot_ms", round(bench_now_ms() - started_ms));
+    cJSON_AddNumberToObject(entry, "snapshot_ms", round(clock_now_ms() - started_ms));
     scene_destroy(&scene);
     if (!params.scene)
         return false;

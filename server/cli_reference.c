@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "server/cli.h"
+#include "server/clock.h"
 
 #define DEFAULT_SAMPLES 64u
 // Noise is looked at after each such share more of samples.
@@ -40,13 +40,6 @@ bool cli_write_json(const char *path, const struct cJSON *json, struct error *ou
     return done || error_set(out_error, "cannot write \"%s\"", path);
 }
 
-static double now_s(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
-}
-
 static uint32_t layers_of(const struct cli_reference_options *options)
 {
     if (options->bounce > 0)
@@ -64,11 +57,11 @@ static void add_samples(const struct cli_reference_options *options, struct refe
     uint32_t most = options->samples ? options->samples
                     : open_ended     ? REFERENCE_MAX_SAMPLES
                                      : DEFAULT_SAMPLES;
-    double end_s = options->time_s > 0.0 ? now_s() + options->time_s : INFINITY;
+    double end_s = options->time_s > 0.0 ? 1e-3 * clock_now_ms() + options->time_s : INFINITY;
     uint32_t target = options->noise > 0.0 ? (most < 16 ? most : 16) : most;
     for (;;) {
         reference_start(reference, target);
-        bool reached = reference_wait(reference, end_s - now_s());
+        bool reached = reference_wait(reference, end_s - 1e-3 * clock_now_ms());
         if (!reached)
             reference_stop(reference);
         reference_get_progress(reference, out_progress);
@@ -183,9 +176,9 @@ int cli_render_reference(const struct cli_reference_options *options, const stru
     if (!reference)
         return cli_fail(CLI_EXIT_RENDER, "%s", error.message);
     struct reference_progress progress;
-    double started_s = now_s();
+    double started_s = 1e-3 * clock_now_ms();
     add_samples(options, reference, &progress);
-    double seconds = now_s() - started_s;
+    double seconds = 1e-3 * clock_now_ms() - started_s;
     bool done = write_picture(options, shot, reference, out, &error) &&
                 (!stats || write_statistics(stats, shot, &progress, seconds, &error));
     reference_destroy(&reference);

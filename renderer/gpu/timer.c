@@ -2,8 +2,8 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "renderer/clock.h"
 #include "renderer/gpu/internal.h"
 
 #define FRAMES_IN_FLIGHT 4
@@ -16,13 +16,6 @@ struct gpu_timer {
     double time_ms[GPU_TIMER_SLOTS];
     uint32_t frame;
 };
-
-static double now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
 
 struct gpu_timer *gpu_timer_create(struct gpu *gpu)
 {
@@ -59,7 +52,7 @@ void gpu_timer_begin(struct gpu_timer *timer, uint32_t slot)
     if (timer->gpu->info.gpu_timers)
         glQueryCounter(timer->queries[timer->frame][slot][0], GL_TIMESTAMP);
     else
-        timer->started_ms[slot] = now_ms();
+        timer->started_ms[slot] = clock_now_ms();
 }
 
 void gpu_timer_end(struct gpu_timer *timer, uint32_t slot)
@@ -73,7 +66,7 @@ void gpu_timer_end(struct gpu_timer *timer, uint32_t slot)
     // Rasterisation is queued even on a CPU driver: finish it, so that each pass shows its own
     // time. The work has to be done anyway before the frame can be read.
     glFinish();
-    timer->time_ms[slot] = now_ms() - timer->started_ms[slot];
+    timer->time_ms[slot] = clock_now_ms() - timer->started_ms[slot];
 }
 
 void gpu_timer_poll(struct gpu_timer *timer)

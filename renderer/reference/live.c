@@ -4,8 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "renderer/clock.h"
 
 // Camera and scene rest when they have been the same for so long.
 #define REST_MS 150.0
@@ -18,13 +19,6 @@
 // Good enough, or as far as it goes.
 #define WANTED_NOISE   0.01
 #define WANTED_SAMPLES 16384u
-
-static double now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
 
 static void *build(void *context)
 {
@@ -133,7 +127,7 @@ static bool start(struct live_reference *live, struct live_scene *scene, struct 
 enum live_state live_reference_update(struct live_reference *live, struct live_scene *scene,
                                       const struct live_params *params, struct error *out_error)
 {
-    double now = now_ms();
+    double now = clock_now_ms();
     if (!same_params(live, params)) {
         live_reference_finish(live);
         live->params = *params;
