@@ -1,7 +1,7 @@
 // Proves that light stays in its room. Two closed rooms share a wall one voxel thick, a lamp
 // lights one of them: the other receives less than 1 % of the lit room's mean indirect light. A
-// wall two voxels thick lets nothing through. Wherever the wall lies between two voxels, and
-// however the rooms are turned.
+// wall two voxels thick lets nothing through, a turned one 0.04 % at most. Wherever the wall lies
+// between two voxels, and however the rooms are turned.
 //
 // A voxel is the longest edge of the scene's bounds over 64, which is what a grid of that
 // resolution can do at best. Clip levels are finer near the camera.
@@ -18,7 +18,10 @@
 #define PICTURE_EDGE    32u
 #define RESOLUTION      64.0
 #define ONE_VOXEL_SHARE 0.01
-#define NOTHING         2e-4 // a tenth of a step of an 8-bit picture, where the lit room is white
+#define NOTHING         1e-6
+// Along the edges of turned walls a little comes through: a tenth of a step of an 8-bit picture in
+// which the lit room is white.
+#define TURNED_NOTHING 4e-4
 
 static const float turns_rad[] = {0.0f, 0.2f, 0.73f};
 static const float offsets_voxels[] = {0.0f, 0.25f, 0.5f};
@@ -61,10 +64,11 @@ static void check_walls_of_turn(struct gi_report *report, enum gi_method method,
                                 int wall_voxels)
 {
     double edge_m = voxel_edge_m(turns_rad[turn]), lit = 0.0;
-    double allowed = wall_voxels == 1 ? ONE_VOXEL_SHARE : NOTHING;
+    double nothing = turn == 0 ? NOTHING : TURNED_NOTHING;
+    double allowed = wall_voxels == 1 ? ONE_VOXEL_SHARE : nothing;
     for (size_t offset = 0; offset < 3; offset++) {
-        // Of turned rooms and of thick walls a diagonal of the table is enough.
-        if (!gi_test_is_full() && (turn > 0 || wall_voxels > 1) && offset != turn)
+        // Of turned rooms and of thick walls the diagonal with the worst of the table is enough.
+        if (!gi_test_is_full() && (turn > 0 || wall_voxels > 1) && offset != (3 - turn) % 3)
             continue;
         struct gi_rooms_params rooms = {.wall_m = (float)(wall_voxels * edge_m),
                                         .offset_m = (float)(offsets_voxels[offset] * edge_m),
