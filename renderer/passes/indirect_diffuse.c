@@ -21,7 +21,7 @@ static bool gather_by_rays(const struct frame *frame, const struct pass *pass,
 {
     char extra[48];
     uint32_t step = gi_gather_step(frame), pixels = step * GROUP_EDGE;
-    snprintf(extra, sizeof(extra), "GATHER_STEP %u\nRAYS %d\n", step, GATHER_RAYS_PER_PICTURE);
+    snprintf(extra, sizeof(extra), "GATHER_STEP %u\n", step);
     const struct gpu_program *gather =
         voxel_program(frame, pass, "gi/ray_gather.comp", extra, out_error);
     const struct gpu_program *filter =

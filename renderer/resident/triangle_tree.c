@@ -19,7 +19,7 @@ struct flat_triangle {
     float edge_b[3]; // from there
     float opacity;   // mean of a masked material
     float edge_c[3];
-    float unused;
+    uint32_t flags; // TREE_LIT_DIRECTLY
 };
 
 // What Embree's builder makes, from its own memory.
@@ -48,6 +48,12 @@ static bool blocks_light(const struct resident_instance *instance)
     return instance->visible && instance->group / DRAW_CULL_COUNT != DRAW_TRANSPARENT;
 }
 
+// Whether its emission reaches others as that of planar emitters.
+static bool emits_directly(const struct resident_instance *instance)
+{
+    return instance->emits_directly && !instance->large_emitter;
+}
+
 // Of all that the tree is made from.
 static uint64_t content_key(const struct resident *resident)
 {
@@ -56,7 +62,9 @@ static uint64_t content_key(const struct resident *resident)
     key = (key ^ now->geometry) * 1099511628211ull;
     key = (key ^ now->transforms) * 1099511628211ull;
     for (uint32_t i = 0; i < resident->counts.instances; i++)
-        key = (key ^ blocks_light(&resident->instances[i])) * 1099511628211ull;
+        key = (key ^ (blocks_light(&resident->instances[i]) +
+                      2u * emits_directly(&resident->instances[i]))) *
+              1099511628211ull;
     return key;
 }
 
@@ -91,10 +99,10 @@ static float opacity_of(const struct resident *resident, const struct scene_mate
 }
 
 // Adds a triangle unless it has no area or reaches too far.
-static void add_triangle(struct tree_work *work, const double corners[3][3], uint32_t id,
-                         float opacity)
+static void add_triangle(struct tree_work *work, const double corners[3][3],
+                         const struct flat_triangle *traits)
 {
-    struct flat_triangle triangle = {.id = id, .opacity = opacity};
+    struct flat_triangle triangle = *traits;
     struct RTCBuildPrimitive box = {.primID = work->triangle_count};
     float *lower = &box.lower_x, *upper = &box.upper_x;
     double edges[2][3], area[3], extent = 0.0;
@@ -128,14 +136,18 @@ static void add_instance(struct tree_work *work, const struct resident_instance 
     const struct scene *scene = work->resident->scene;
     const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
     const float *matrix = scene->nodes[instance->node].world_from_local;
-    float opacity = opacity_of(work->resident, &scene->materials[primitive->material]);
+    struct flat_triangle traits = {
+        .opacity = opacity_of(work->resident, &scene->materials[primitive->material]),
+        .flags = emits_directly(instance) ? TREE_LIT_DIRECTLY : 0,
+    };
     for (uint32_t i = 0; i < instance->index_count / 3; i++) {
         double corners[3][3];
         for (int corner = 0; corner < 3; corner++) {
             uint32_t index = scene->indices[primitive->index_first + 3 * i + (uint32_t)corner];
             place_corner(work, matrix, scene->vertices[index].position, corners[corner]);
         }
-        add_triangle(work, corners, instance->first_id + i + 1, opacity);
+        traits.id = instance->first_id + i + 1;
+        add_triangle(work, corners, &traits);
     }
 }
 

@@ -58,13 +58,15 @@
 // TREE_TRIANGLE_TEXELS a triangle, in rows of 2^TREE_ROW_BITS texels. A node has for each of two
 // children lower corner and child, upper corner. A child is a node, or
 // TREE_LEAF | first triangle << TREE_COUNT_BITS | triangles. A triangle has its first corner and
-// visibility id, then an edge from there and mean opacity, then the other edge.
+// visibility id, then an edge from there and mean opacity, then the other edge and
+// flags.
 #define TREE_ROW_BITS        12
 #define TREE_NODE_TEXELS     4
 #define TREE_TRIANGLE_TEXELS 3
 #define TREE_LEAF            0x80000000u
 #define TREE_COUNT_BITS      3
 #define TREE_MAX_DEPTH       48
+#define TREE_LIT_DIRECTLY    1u // its emission reaches others as a planar emitter's
 
 #define GATHER_RAYS_PER_PICTURE 2
 
