@@ -119,7 +119,7 @@ const struct cJSON *results_find(const struct cJSON *results, const struct rung 
 // each metric anew: rungs than which none is both faster and less wrong.
 void results_add(struct cJSON *results, struct cJSON *entry);
 
-// Writes results.json, results.csv and the report: index.html, report.js, results.js.
+// Writes results.json, results.csv and the report: index.html, its scripts, results.js.
 bool results_write(const struct cJSON *results, const char *folder, struct error *out_error);
 
 #endif
