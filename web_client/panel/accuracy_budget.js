@@ -29,7 +29,7 @@ export class AccuracyBudget {
       onchange: () => this.pick && options.onChoose(this.pick.name),
     });
     this.marks = element('div', { class: 'budget-marks', 'aria-hidden': 'true' });
-    this.marks.append(...BUDGETS.map(({ name }) => element('span', {}, name)));
+    this.marks.append(...BUDGETS.map(({ name }, i) => element('span', { style: `--place:${i / (BUDGETS.length - 1)}` }, name)));
     this.text = element('p', { class: 'budget-text' });
     this.use = element('button', { type: 'button', onclick: () => options.onChoose(this.pick.name) }, 'Draw with it');
     root.append(element('div', { class: 'budget' }, this.slider, this.marks), this.text, element('div', { class: 'actions' }, this.use));
