@@ -29,6 +29,8 @@ struct renderer {
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
     struct live_scene live_scene; // of references
+    bool (*may_draw)(void *user); // NULL: always
+    void *user;
 };
 
 static const char *find_shader_dir(const struct renderer_params *params)
@@ -51,6 +53,8 @@ struct renderer *renderer_create(const struct renderer_params *params, struct er
         return NULL;
     }
     assert(passes_check(all_passes, PASS_COUNT, NULL));
+    renderer->may_draw = params->may_draw;
+    renderer->user = params->user;
     renderer->gpu = gpu_create(params->gpu, find_shader_dir(params), out_error);
     if (!renderer->gpu) {
         free(renderer);
@@ -305,6 +309,10 @@ static float view_convergence(const struct frame *frame)
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error)
 {
+    if (renderer->may_draw && !renderer->may_draw(renderer->user)) {
+        error_set(out_error, "no more frames are wanted");
+        return RENDER_FAILED;
+    }
     double started_ms = clock_now_ms();
     if (!params_are_valid(params, out_error))
         return RENDER_FAILED;

@@ -287,6 +287,12 @@ void render_run_command(struct render_thread *thread, struct command *command)
     case METHOD_PICK:
         run_pick(thread, client, command);
         break;
+    case METHOD_ACCURACY_START:
+        render_run_accuracy_start(thread, client, command);
+        break;
+    case METHOD_ACCURACY_CANCEL:
+        render_run_accuracy_cancel(thread, command);
+        break;
     default:
         run_edit(thread, client, command);
         break;

@@ -117,6 +117,18 @@ uint64_t render_next_draw_us(struct render_thread *thread);
 // if there was one.
 bool render_collect(struct render_thread *thread, bool wait);
 
+// The shared settings as views are drawn with them.
+struct render_settings render_resolve_settings(const struct render_thread *thread);
+
+// From when on no client will wait for a frame, or soon do so because things move, if nothing comes
+// in: now or earlier, later, or QUALITY_NEVER while one waits.
+uint64_t render_idle_from_us(struct render_thread *thread);
+
+// render_accuracy.c
+void render_run_accuracy_start(struct render_thread *thread, struct render_client *client,
+                               const struct command *command);
+void render_run_accuracy_cancel(struct render_thread *thread, const struct command *command);
+
 // render_statistics.c
 void render_send_statistics(struct render_thread *thread, uint32_t slot);
 

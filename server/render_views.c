@@ -53,6 +53,7 @@ void render_remove_gone_clients(struct render_thread *thread, bool all)
             continue;
         if (client->drawing)
             frame_stream_finish(thread->params.stream, slot, NULL);
+        accuracy_service_forget(thread->params.accuracy, client->client_id);
         renderer_view_destroy(thread->renderer, &client->view);
         edit_history_clear(&client->history);
         memset(client, 0, sizeof(*client));
@@ -145,6 +146,22 @@ uint64_t render_next_draw_us(struct render_thread *thread)
     return next;
 }
 
+uint64_t render_idle_from_us(struct render_thread *thread)
+{
+    uint64_t now = clock_now_us(), from = now;
+    for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
+        const struct render_client *client = &thread->clients[slot];
+        if (!client->client_id || client->options.paused)
+            continue;
+        if (client->drawing || wants_draw(thread, slot, now))
+            return QUALITY_NEVER;
+        uint64_t still = client->quality.moved_at_us + QUALITY_STILL_US;
+        if (quality_controller_is_moving(&client->quality, now) && still > from)
+            from = still;
+    }
+    return from;
+}
+
 static void fill_header(struct render_thread *thread, struct render_client *client,
                         uint64_t start_us)
 {
@@ -174,7 +191,7 @@ static void fail_draw(struct render_thread *thread, struct render_client *client
 
 // What "auto" means must not change with the quality, or the voxels would be made anew whenever the
 // camera starts and stops.
-static struct render_settings resolve_settings(const struct render_thread *thread)
+struct render_settings render_resolve_settings(const struct render_thread *thread)
 {
     struct render_settings settings = thread->settings;
     if (settings.voxel_resolution == VOXEL_RESOLUTION_AUTO)
@@ -202,7 +219,7 @@ static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
         .debug_level = client->options.debug_level,
         .debug_face = client->options.debug_face,
         .output = FRAME_OUTPUT_YCBCR,
-        .settings = resolve_settings(thread),
+        .settings = render_resolve_settings(thread),
         .user_id = client->frame_count + 1,
     };
     struct error error = {""};
