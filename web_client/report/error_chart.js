@@ -13,6 +13,8 @@
 globalThis.errorChart = (() => {
   const COLORS = { none: '#8a8f99', clipmap: '#d9622b', grid: '#2b7fd9' };
   const OTHER_COLOR = '#3a9a5b';
+  const LETTER_WIDTH = 6; // of a name, about
+  const LETTER_HEIGHT = 11;
   const TICK_STEPS = [[1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9], [1, 2, 3, 5], [1, 2, 5], [1, 3], [1]];
 
   /** What times a setting has; `short` for narrow charts. */
@@ -146,7 +148,26 @@ globalThis.errorChart = (() => {
     return shapes;
   }
 
-  function pointShapes(point, { x, y, area }, { isLarge, isLabelled, classes, ring }) {
+  /** A name beside a mark where it meets none of `taken`; null if there is no such place, unless it must be shown. */
+  function labelShape(text, { cx, cy, area, taken, mustShow }) {
+    const width = LETTER_WIDTH * text.length;
+    const isLeftFirst = cx > area.left + 0.6 * (area.right - area.left);
+    const sides = isLeftFirst ? ['end', 'start'] : ['start', 'end'];
+    for (const rise of [-7, 16])
+      for (const anchor of sides) {
+        const x = cx + (anchor === 'end' ? -11 : 11);
+        const left = anchor === 'end' ? x - width : x;
+        const box = { left, right: left + width, top: cy + rise - LETTER_HEIGHT, bottom: cy + rise };
+        const meets = taken.some((other) => box.left < other.right && other.left < box.right && box.top < other.bottom && other.top < box.bottom);
+        const fits = box.left >= area.left && box.right <= area.right && box.bottom <= area.bottom;
+        if (!mustShow && (meets || !fits)) continue;
+        taken.push(box);
+        return { tag: 'text', attributes: { class: 'name', x, y: cy + rise, 'text-anchor': anchor }, text };
+      }
+    return null;
+  }
+
+  function pointShapes(point, { x, y, area, taken }, { isLarge, isLabelled, isMarked, classes, ring }) {
     const [cx, cy] = [x.scale(point.ms), y.scale(point.error)];
     const marks = [];
     if (ring) marks.push({ tag: 'circle', attributes: { class: `ring ${ring}`, cx, cy, r: isLarge ? 11 : 9 } });
@@ -161,11 +182,8 @@ globalThis.errorChart = (() => {
       'data-rung': point.rung.name,
     };
     marks.push({ tag: 'circle', attributes, point });
-    if (isLabelled) {
-      const isLeft = cx > area.left + 0.6 * (area.right - area.left);
-      const at = { class: 'name', x: cx + (isLeft ? -11 : 11), y: cy - 7, 'text-anchor': isLeft ? 'end' : 'start' };
-      marks.push({ tag: 'text', attributes: at, text: point.rung.name });
-    }
+    const label = isLabelled && labelShape(point.rung.name, { cx, cy, area, taken, mustShow: isMarked });
+    if (label) marks.push(label);
     return marks;
   }
 
@@ -190,6 +208,7 @@ globalThis.errorChart = (() => {
       x: logScale(points.map(({ ms }) => ms), area.left, area.right, isNarrow ? 26 : 34),
       y: logScale(points.map(({ error }) => error), area.bottom, area.top, 20),
       area,
+      taken: [],
       titles: { x: isNarrow ? time.short : time.title, y: isNarrow ? (metric?.title ?? '') : errorTitle(metric) },
     };
     const corners = front.map(({ ms, error }, i) => {
@@ -205,7 +224,8 @@ globalThis.errorChart = (() => {
       shapes.push(
         ...pointShapes(point, frame, {
           isLarge: front.includes(point),
-          isLabelled: labels === 'front' ? front.includes(point) || isMarked : isMarked,
+          isLabelled: isMarked || (labels === 'front' && front.includes(point)),
+          isMarked,
           classes: name === live ? 'point live' : 'point',
           ring: name === chosen ? 'chosen' : name === live ? 'live' : '',
         }),
@@ -214,5 +234,5 @@ globalThis.errorChart = (() => {
     return shapes;
   }
 
-  return { TIMES, STATES, PARTS, FIRST_CHOICE, colorOf, errorTitle, short, valueOf, pointsOf, frontOf, settingText, shapesOf };
+  return { TIMES, STATES, PARTS, FIRST_CHOICE, colorOf, errorOf, errorTitle, short, valueOf, pointsOf, frontOf, settingText, shapesOf };
 })();
