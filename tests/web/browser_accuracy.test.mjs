@@ -203,6 +203,9 @@ describe('the tab of accuracy', () => {
     assert.deepEqual(await calls(), [{ method: 'view.configure', params: { rung: 'final' } }]);
     await untilText(/Drawn with final/);
     assert.equal(await point('final').getAttribute('aria-selected'), 'true');
+    // Where settings are chosen it is told that they rest.
+    assert.match(await page.locator('#panel-render .note').textContent(), /drawn with final/);
+    assert.ok(!(await page.locator('#panel-view').innerText()).includes('Rung'));
   });
 
   test('goes back to the own settings', async () => {
@@ -210,6 +213,7 @@ describe('the tab of accuracy', () => {
     await untilText(/Drawn with your own settings/);
     assert.deepEqual(await calls(), [{ method: 'view.configure', params: { rung: '' } }]);
     assert.equal(await page.locator('.error-chart .ring.chosen').count(), 0);
+    assert.equal(await page.locator('#panel-render .note').getAttribute('hidden'), '');
   });
 
   test('the measure of error can be another', async () => {
