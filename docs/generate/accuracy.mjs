@@ -20,6 +20,7 @@ What has been measured by the same program is kept; a run that was stopped goes 
   --scenes A,B     only these: ${SCENES.map(({ name }) => name).join(', ')}
   --size WxH       of the pictures (default 640x360)
   --noise X        of the truth: standard error of pixels over the mean (default 0.005)
+  --samples N      a pixel of the truth, in scenes with caustics, whose noise falls too slowly (default 16384)
   --ladder NAME    quick, full or a file (default full)
   --frames N       of a moving camera for each setting (default 12)
   --out DIR        where measurements are kept (default build/accuracy)
@@ -41,6 +42,7 @@ function readOptions() {
         scenes: text(SCENES.map(({ name }) => name).join()),
         size: text('640x360'),
         noise: text('0.005'),
+        samples: text('16384'),
         ladder: text('full'),
         frames: text('12'),
         out: text(join(ROOT, 'build/accuracy')),
@@ -73,8 +75,9 @@ function sourceOf(scene) {
 function measure(scene, source, options, folder) {
   mkdirSync(folder, { recursive: true });
   process.stderr.write(`accuracy: ${scene.name}\n`);
-  const { size, noise, ladder, frames } = options;
-  const chosen = ['--size', size, '--until-noise', noise, '--ladder', ladder, '--frames', frames];
+  const { size, noise, samples, ladder, frames } = options;
+  const truth = scene.hasCaustics ? ['--reference-spp', samples] : ['--until-noise', noise];
+  const chosen = ['--size', size, ...truth, '--ladder', ladder, '--frames', frames];
   const program = process.env.VOXCAST ?? join(ROOT, 'build/release/bin/voxcast');
   const { status, error } = spawnSync(program, ['accuracy', source, '--out', folder, ...chosen], { stdio: 'inherit' });
   if (error) fail(`cannot run ${program}: ${error.message}`);
