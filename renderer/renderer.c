@@ -139,7 +139,8 @@ static bool params_equal(const struct frame_params *a, const struct frame_params
     return memcmp(&a->camera, &b->camera, sizeof(a->camera)) == 0 && a->width == b->width &&
            a->height == b->height && a->quality == b->quality && a->debug_view == b->debug_view &&
            a->debug_level == b->debug_level && a->debug_face == b->debug_face &&
-           a->output == b->output && render_settings_equal(&a->settings, &b->settings);
+           a->output == b->output && a->own_voxels == b->own_voxels &&
+           render_settings_equal(&a->settings, &b->settings);
 }
 
 static bool same_surfaces(const struct view *view, const struct frame_params *params,
