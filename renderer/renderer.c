@@ -13,6 +13,7 @@
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/resident/resident.h"
+#include "renderer/resident/triangle_tree.h"
 #include "renderer/view.h"
 
 // Nearest visible distance, relative to the scene's diagonal. Reversed Z keeps precision anyway.
@@ -205,6 +206,9 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->textures[2] = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
     block->textures[1] = resident->diagonal_m * SHADOW_NEAR_FRACTION;
     block->textures[3] = frame->quality->specular_roughness;
+    if (resident->tree)
+        memcpy(block->tree, resident->tree->center, sizeof(vec3));
+    block->tree[3] = resident->diagonal_m * NEAR_FRACTION;
 }
 
 static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)

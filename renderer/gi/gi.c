@@ -17,6 +17,8 @@
 #define OCCLUSION_SHARE 0.05f
 // Pictures of a camera at rest that are averaged where pixels gather.
 #define GATHERED_PICTURES 4u
+// The same of rays, GATHER_RAYS_PER_PICTURE each.
+#define RAY_PICTURES 32u
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
@@ -292,7 +294,15 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
 enum gather_mode gi_gather_mode(const struct frame *frame)
 {
     enum gather_mode chosen = frame->params->settings.gather_mode;
-    return chosen == GATHER_AUTO ? GATHER_CACHE : chosen;
+    return chosen == GATHER_AUTO ? frame->quality->gather_mode : chosen;
+}
+
+uint32_t gi_gather_step(const struct frame *frame)
+{
+    enum gather_mode mode = gi_gather_mode(frame);
+    // Rays start once a shown pixel, since many of them are averaged.
+    bool supersampled = frame->quality->resolution_scale > 1.0f;
+    return mode == GATHER_HALF || (mode == GATHER_RAYS && supersampled) ? 2 : 1;
 }
 
 // Pixels gather once the light has settled; until then they show the cache. While nothing moves
@@ -307,7 +317,7 @@ static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
     frame->still_count = 1;
     if (frame->gather == GATHER_CACHE)
         return;
-    frame->still_frames = GATHERED_PICTURES;
+    frame->still_frames = frame->gather == GATHER_RAYS ? RAY_PICTURES : GATHERED_PICTURES;
     if (!volume->light.converged) {
         frame->gather = GATHER_CACHE;
         frame->still_count = 0;
@@ -374,5 +384,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
     };
     voxel_light_begin(volume, &light, &frame->light_work);
     plan_gathering(frame, volume);
+    if (frame->gather == GATHER_RAYS && frame->gather_now && !resident_need_tree(frame->resident))
+        return error_set(out_error, "a tree of the scene's triangles does not fit into memory");
     return true;
 }

@@ -35,6 +35,9 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 // How pixels of the frame gather in the end, as settings and quality say.
 enum gather_mode gi_gather_mode(const struct frame *frame);
 
+// Every how many-th pixel gathers, in both directions.
+uint32_t gi_gather_step(const struct frame *frame);
+
 // Frees volumes that no view has drawn with last.
 void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count);
 
