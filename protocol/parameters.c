@@ -141,7 +141,7 @@ static const struct parameter parameters[] = {
           "Cones that gather light above a surface; auto is by quality."),
     FLOAT_(GROUP_SETTINGS, "cone_step", 0, 2, 0.05, "diameters", "0",
            "Length of a cone's steps, 0.25 or more; 0 is by quality."),
-    ENUM_(GROUP_SETTINGS, "gather_mode", 0, "\"auto\"", NAMES("auto", "cache", "half", "pixel"),
+    ENUM_(GROUP_SETTINGS, "gather_mode", 0, "\"auto\"", NAMES("auto", "cache", "half", "pixel", "rays"),
           "Where cones start: at voxels, at every other pixel, at every pixel."),
     INT_(GROUP_SETTINGS, "bounces", 0, 16, "", "0", "Of indirect light; 0 is unlimited."),
     FLOAT_(GROUP_SETTINGS, "indirect_intensity", 0, 100, 0.05, "", "1",
@@ -200,6 +200,9 @@ static const struct parameter parameters[] = {
     ENUM_(GROUP_VIEW, "debug_face", 0, "\"+x\"", NAMES("+x", "-x", "+y", "-y", "+z", "-z"),
           "Which direction of the voxels the voxel pictures show."),
     BOOL_(GROUP_VIEW, "paused", 0, "false", "No frames while true."),
+    STRING_(GROUP_VIEW, "rung",
+            "Rung of this client's newest measurement of accuracy to draw its pictures with, "
+            "whatever the shared settings are; empty: with those."),
 
     VEC3_(GROUP_CAMERA, "eye", 0, ANY_PLACE_M, 0.1, "m", "[0,0,5]", "World position of the eye."),
     VEC3_(GROUP_CAMERA, "target", 0, ANY_PLACE_M, 0.1, "m", "[0,0,0]",

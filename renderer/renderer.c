@@ -13,6 +13,7 @@
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/resident/resident.h"
+#include "renderer/resident/triangle_tree.h"
 #include "renderer/view.h"
 
 // Nearest visible distance, relative to the scene's diagonal. Reversed Z keeps precision anyway.
@@ -139,7 +140,8 @@ static bool params_equal(const struct frame_params *a, const struct frame_params
     return memcmp(&a->camera, &b->camera, sizeof(a->camera)) == 0 && a->width == b->width &&
            a->height == b->height && a->quality == b->quality && a->debug_view == b->debug_view &&
            a->debug_level == b->debug_level && a->debug_face == b->debug_face &&
-           a->output == b->output && render_settings_equal(&a->settings, &b->settings);
+           a->output == b->output && a->own_voxels == b->own_voxels &&
+           render_settings_equal(&a->settings, &b->settings);
 }
 
 static bool same_surfaces(const struct view *view, const struct frame_params *params,
@@ -204,6 +206,9 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->textures[2] = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
     block->textures[1] = resident->diagonal_m * SHADOW_NEAR_FRACTION;
     block->textures[3] = frame->quality->specular_roughness;
+    if (resident->tree)
+        memcpy(block->tree, resident->tree->center, sizeof(vec3));
+    block->tree[3] = resident->diagonal_m * NEAR_FRACTION;
 }
 
 static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)

@@ -82,6 +82,7 @@ struct frame_params {
     enum voxel_face debug_face; // likewise
     enum frame_output output;
     struct render_settings settings;
+    bool own_voxels;  // shares none with other views, since its settings are not theirs
     uint64_t user_id; // handed back with the pixels
 };
 

@@ -8,7 +8,7 @@ const char *const voxel_directions_names[VOXEL_DIRECTIONS_COUNT] = {"anisotropic
 
 const char *const cone_set_names[CONE_SET_COUNT] = {"auto", "5", "6", "9", "16", "32"};
 
-const char *const gather_mode_names[GATHER_COUNT] = {"auto", "cache", "half", "pixel"};
+const char *const gather_mode_names[GATHER_COUNT] = {"auto", "cache", "half", "pixel", "rays"};
 
 const char *const levels_per_frame_names[LEVELS_PER_FRAME_COUNT] = {"all", "one"};
 
@@ -53,6 +53,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                        .voxel_resolution = VOXEL_RESOLUTION_64,
                        .cone_set = CONE_SET_6,
                        .cone_step = 1.0f,
+                       .gather_mode = GATHER_CACHE,
                        .specular_roughness = 0.2f,
                        .specular_reflectance = 0.2f},
     [QUALITY_INTERACTIVE] = {.resolution_scale = 1.0f,
@@ -62,6 +63,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                              .voxel_resolution = VOXEL_RESOLUTION_64,
                              .cone_set = CONE_SET_9,
                              .cone_step = 1.0f,
+                             .gather_mode = GATHER_CACHE,
                              .specular_roughness = 0.35f,
                              .specular_reflectance = 0.2f},
     [QUALITY_HIGH] = {.resolution_scale = 1.0f,
@@ -71,6 +73,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                       .voxel_resolution = VOXEL_RESOLUTION_64,
                       .cone_set = CONE_SET_9,
                       .cone_step = 1.0f,
+                      .gather_mode = GATHER_CACHE,
                       .soft_shadows = true,
                       .specular_roughness = 0.4f},
     [QUALITY_FINAL] = {.resolution_scale = 2.0f,
@@ -80,6 +83,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                        .voxel_resolution = VOXEL_RESOLUTION_128,
                        .cone_set = CONE_SET_16,
                        .cone_step = 0.5f,
+                       .gather_mode = GATHER_RAYS,
                        .soft_shadows = true,
                        .specular_roughness = 0.6f},
 };

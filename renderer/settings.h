@@ -41,9 +41,17 @@ enum cone_set {
     CONE_SET_COUNT
 };
 
-// Where diffuse cones start: at voxel faces only (as auto has it: against the path tracer it is
-// both the most exact and by far the cheapest), at every other pixel, at every pixel.
-enum gather_mode { GATHER_AUTO, GATHER_CACHE, GATHER_HALF, GATHER_PIXEL, GATHER_COUNT };
+// Where diffuse light is gathered: by cones at voxel faces only, at every other pixel, at every
+// pixel; or by rays against the triangles, which wait until the camera rests and the light in
+// voxels has settled. "Auto" leaves it to the quality level.
+enum gather_mode {
+    GATHER_AUTO,
+    GATHER_CACHE,
+    GATHER_HALF,
+    GATHER_PIXEL,
+    GATHER_RAYS,
+    GATHER_COUNT
+};
 
 // How many clip levels are relit in a frame.
 enum levels_per_frame { LEVELS_PER_FRAME_ALL, LEVELS_PER_FRAME_ONE, LEVELS_PER_FRAME_COUNT };
@@ -148,6 +156,7 @@ struct quality_level {
     enum voxel_resolution voxel_resolution; // on a GPU at least 128
     enum cone_set cone_set;
     float cone_step;
+    enum gather_mode gather_mode;
     bool soft_shadows;
     float specular_roughness;   // rougher surfaces reflect as if by the cached irradiance
     float specular_reflectance; // and so do those that reflect less than this head-on

@@ -128,20 +128,25 @@ static bool prepare_cascades(struct view *view, struct shadow_map *map, uint32_t
         uint32_t number = shadow_map_take_cascade(map);
         if (number == UINT32_MAX)
             return false;
-        view->cascade_stale[view->cascade_count] = true;
+        view->cascade_placed[view->cascade_count] = false;
         view->cascade_numbers[view->cascade_count++] = number;
     }
     return true;
 }
 
 // What indirect light needs beside the volume.
-static bool prepare_indirect(struct view *view, enum gather_mode gather, uint32_t effect_bits)
+static bool prepare_indirect(struct view *view, const struct frame *frame)
 {
     bool done = true;
-    uint32_t step = gather == GATHER_HALF ? 2 : 1;
+    uint32_t effect_bits = frame->plan.bits;
+    enum gather_mode gather = frame->volume ? gi_gather_mode(frame) : GATHER_CACHE;
+    uint32_t step = gi_gather_step(frame);
     size_t gathered =
         (size_t)((view->width + step - 1) / step) * ((view->height + step - 1) / step);
-    if (gather == GATHER_AUTO || gather == GATHER_CACHE)
+    // What is gathered, and the same filtered; then what lobes mirror.
+    if (gather == GATHER_RAYS)
+        gathered *= effect_bits & EFFECT_BIT(EFFECT_INDIRECT_SPECULAR) ? 3 : 2;
+    if (gather == GATHER_CACHE)
         gpu_buffer_destroy(&view->gathered);
     else
         done = gpu_buffer_ensure(view->gpu, &view->gathered, "view.gathered", GPU_BUFFER_STATIC,
@@ -221,8 +226,7 @@ bool view_prepare(struct view *view, const struct frame *frame)
         gpu_buffer_destroy(&view->fragments);
         gpu_buffer_destroy(&view->transparent_tiles);
     }
-    done = done && prepare_indirect(view, frame->volume ? gi_gather_mode(frame) : GATHER_CACHE,
-                                    effect_bits);
+    done = done && prepare_indirect(view, frame);
     bool cascades =
         (effect_bits & EFFECT_BIT(EFFECT_SHADOWS)) && resident->directional_light != NO_SHADOW;
     return done && prepare_cascades(view, resident->shadow_map,

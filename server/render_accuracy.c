@@ -1,6 +1,8 @@
 // Measuring accuracy: what clients ask for, with a copy of the document as it stands.
 #include "server/render_internal.h"
 
+#include <string.h>
+
 #include "server/clock.h"
 
 static bool prepare(struct render_thread *thread, const struct render_client *client,
@@ -52,6 +54,7 @@ void render_run_accuracy_start(struct render_thread *thread, struct render_clien
     cJSON_AddNumberToObject(result, "rung_count", ticket.rung_count);
     cJSON_AddNumberToObject(result, "width", ticket.width);
     cJSON_AddNumberToObject(result, "height", ticket.height);
+    render_clear_rung(thread, client);
     render_reply(thread, command, result);
     accuracy_service_submit(thread->params.accuracy, client->client_id);
 }
@@ -60,4 +63,31 @@ void render_run_accuracy_cancel(struct render_thread *thread, const struct comma
 {
     accuracy_service_cancel(thread->params.accuracy, command->client_id);
     render_reply(thread, command, cJSON_CreateObject());
+}
+
+bool render_find_rung(struct render_thread *thread, const struct command *command,
+                      struct rung_override *out_rung, struct rpc_error *out_error)
+{
+    for (uint32_t i = 0; i < command->value_count; i++) {
+        const struct parameter_value *value = &command->values[i];
+        struct frame_params params;
+        struct error error;
+        double scale;
+        if (strcmp(value->parameter->name, "rung") != 0 || !value->text[0])
+            continue;
+        if (!accuracy_service_get_rung(thread->params.accuracy, command->client_id, value->text,
+                                       &params, &scale, &error))
+            return rpc_error_field(out_error, "rung", NULL, "rung: %s", error.message);
+        *out_rung = (struct rung_override){
+            .quality = params.quality, .scale = scale, .settings = params.settings};
+    }
+    return true;
+}
+
+void render_clear_rung(struct render_thread *thread, struct render_client *client)
+{
+    if (!client->client_id || !client->options.rung[0])
+        return;
+    client->options.rung[0] = '\0';
+    render_mark_dirty(thread, client);
 }

@@ -298,6 +298,7 @@ export class App {
     byId('waiting').hidden = true;
     byId('stage').dataset.frame = String(header.frameId);
     byId('stage').dataset.converged = String(header.converged);
+    byId('stage').dataset.cameraRevision = String(header.cameraRevision);
     const rows = this.parameters('view').find((/** @type {any} */ row) => row.name === 'quality')?.values;
     this.badge.show(header, this.view.rung || (rows?.[header.quality] ?? ''));
     this.overlay.pose = this.sender.poseOf(header.cameraRevision);

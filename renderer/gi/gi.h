@@ -5,15 +5,19 @@
 #include "renderer/effects.h"
 #include "renderer/gi/light.h"
 
-// Clipmaps follow cameras; views beyond so many volumes share the one that is nearest.
-#define GI_MAX_VOLUMES 6u
+// Clipmaps follow cameras; views beyond so many volumes share one.
+#define GI_MAX_SHARED_VOLUMES 6u
+// Of views whose settings are not those of others (frame_params.own_voxels).
+#define GI_MAX_OWN_VOLUMES 6u
+#define GI_MAX_VOLUMES     (GI_MAX_SHARED_VOLUMES + GI_MAX_OWN_VOLUMES)
 
 struct gi {
     struct gpu *gpu;
     uint32_t volume_count;
     struct gi_volume {
         struct voxel_volume *volume;
-        const struct view *owner; // whose camera a clipmap follows; NULL for a grid
+        const struct view *owner; // whose camera a clipmap follows; NULL for a shared grid
+        bool own;                 // used by nobody but its owner
         uint64_t serial;
     } volumes[GI_MAX_VOLUMES];
     uint64_t next_serial;
@@ -30,6 +34,9 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 
 // How pixels of the frame gather in the end, as settings and quality say.
 enum gather_mode gi_gather_mode(const struct frame *frame);
+
+// Every how many-th pixel gathers, in both directions.
+uint32_t gi_gather_step(const struct frame *frame);
 
 // Frees volumes that no view has drawn with last.
 void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count);

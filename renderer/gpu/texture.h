@@ -6,6 +6,7 @@
 
 enum gpu_format {
     GPU_FORMAT_R32UI,
+    GPU_FORMAT_RGBA32UI,
     GPU_FORMAT_DEPTH32F,
     GPU_FORMAT_RGBA8,
     GPU_FORMAT_SRGB8_ALPHA8,
@@ -36,8 +37,8 @@ struct gpu_texture_params {
 struct gpu_texture *gpu_texture_create(struct gpu *gpu, const struct gpu_texture_params *params);
 void gpu_texture_destroy(struct gpu_texture **texture);
 
-// Uploads one level of one layer: tightly packed rows, 4 bytes a pixel (RGBA8 formats) or 4 floats
-// (RGBA16F).
+// Uploads one level of one layer: tightly packed rows, 4 bytes a pixel (RGBA8 formats), 4 floats
+// (RGBA16F) or 4 words (RGBA32UI).
 void gpu_texture_write(struct gpu_texture *texture, uint32_t level, uint32_t layer,
                        const void *pixels);
 // Zeroes all levels.

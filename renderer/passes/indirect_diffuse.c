@@ -1,6 +1,7 @@
-// Indirect diffuse light: from the irradiance cache, or from cones at pixels.
+// Indirect diffuse light: from the irradiance cache, or from cones or rays at pixels.
 #include <stdio.h>
 
+#include "renderer/gi/gi.h"
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
@@ -12,6 +13,30 @@ static const char *indirect_diffuse_skip_reason(const struct frame *frame)
     bool shown = frame->params->debug_view == DEBUG_VIEW_FINAL ||
                  frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;
     return shown ? NULL : "the debug view shows none";
+}
+
+// What rays have found is filtered each time that their number has doubled.
+static bool gather_by_rays(const struct frame *frame, const struct pass *pass,
+                           struct error *out_error)
+{
+    char extra[48];
+    uint32_t step = gi_gather_step(frame), pixels = step * GROUP_EDGE;
+    snprintf(extra, sizeof(extra), "GATHER_STEP %u\n", step);
+    const struct gpu_program *gather =
+        voxel_program(frame, pass, "gi/ray_gather.comp", extra, out_error);
+    const struct gpu_program *filter =
+        gather ? voxel_program(frame, pass, "gi/gather_filter.comp", extra, out_error) : NULL;
+    if (!filter)
+        return false;
+    uint32_t columns = (frame->width + pixels - 1) / pixels;
+    uint32_t rows = (frame->height + pixels - 1) / pixels;
+    gpu_dispatch(frame->gpu, gather, columns, rows, 1);
+    gpu_barrier(frame->gpu);
+    if ((frame->still_count & (frame->still_count - 1)) == 0 ||
+        frame->still_count == frame->still_frames)
+        gpu_dispatch(frame->gpu, filter, columns, rows, 1);
+    gpu_barrier(frame->gpu);
+    return true;
 }
 
 static bool gather_at_pixels(const struct frame *frame, const struct pass *pass, const char *extra,
@@ -31,15 +56,14 @@ static bool gather_at_pixels(const struct frame *frame, const struct pass *pass,
 static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
                                  struct error *out_error)
 {
-    bool cached = frame->gather == GATHER_CACHE;
+    bool cached = frame->gather == GATHER_CACHE, rays = frame->gather == GATHER_RAYS;
     bool alone = frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;
-    char extra[32];
-    snprintf(extra, sizeof(extra), "GATHER %d\nALONE %d\n",
-             cached                         ? 0
-             : frame->gather == GATHER_HALF ? 2
-                                            : 1,
-             alone);
-    if (!cached && frame->gather_now && !gather_at_pixels(frame, pass, extra, out_error))
+    char extra[48];
+    snprintf(extra, sizeof(extra), "GATHER %u\nFILTERED %d\nALONE %d\n",
+             cached ? 0 : gi_gather_step(frame), rays, alone);
+    if (!cached && frame->gather_now &&
+        !(rays ? gather_by_rays(frame, pass, out_error)
+               : gather_at_pixels(frame, pass, extra, out_error)))
         return false;
     const struct gpu_program *program =
         voxel_program(frame, pass, "gi/indirect_diffuse.comp", extra, out_error);
@@ -55,7 +79,7 @@ const struct pass indirect_diffuse_pass = {
     .name = "indirect_diffuse",
     .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                     EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) |
-                    EFFECT_BIT(EFFECT_INDIRECT_SPECULAR),
+                    EFFECT_BIT(EFFECT_INDIRECT_SPECULAR) | EFFECT_BIT(EFFECT_ALPHA_MASK),
     .use_count = 5,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/resident/triangle_tree.h"
+
 struct resident *resident_create(struct gpu *gpu, const struct scene *scene,
                                  struct error *out_error)
 {
@@ -48,6 +50,7 @@ void resident_destroy(struct resident **resident_slot)
             gpu_texture_destroy(&resident->texture_spaces[space].classes[i]);
         free(resident->texture_spaces[space].places);
     }
+    triangle_tree_destroy(&resident->tree);
     shadow_map_destroy(&resident->shadow_map);
     gpu_texture_destroy(&resident->environment_levels);
     gpu_texture_destroy(&resident->environment_background);
@@ -158,6 +161,10 @@ void resident_bind(const struct resident *resident)
     gpu_bind_texture(gpu, UNIT_SHADOW_MAP, shadow_map_texture(resident->shadow_map));
     gpu_bind_texture(gpu, UNIT_ENVIRONMENT, resident->environment_levels);
     gpu_bind_texture(gpu, UNIT_BACKGROUND, resident->environment_background);
+    if (resident->tree) {
+        gpu_bind_texture(gpu, UNIT_TREE_NODES, resident->tree->nodes);
+        gpu_bind_texture(gpu, UNIT_TREE_TRIANGLES, resident->tree->triangles);
+    }
     static const uint32_t units[2] = {UNIT_COLOR_CLASSES, UNIT_DATA_CLASSES};
     for (int space = 0; space < 2; space++)
         for (uint32_t i = 0; i < resident->texture_spaces[space].class_count; i++)

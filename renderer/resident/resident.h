@@ -103,6 +103,8 @@ struct resident {
     float bounds_max[3];
     float diagonal_m; // of the bounds; 1 where there is no geometry
 
+    struct triangle_tree *tree; // of what gathering rays meet; NULL until asked for
+
     struct gpu_buffer *materials;
     struct gpu_buffer *texture_blocks;
     bool texture_transforms;                // any texture has a KHR_texture_transform of its own
@@ -146,6 +148,10 @@ bool resident_upload_materials(struct resident *resident);
 bool resident_upload_lights(struct resident *resident);
 bool resident_upload_environment(struct resident *resident);
 void resident_count_materials(struct resident *resident);
+
+// Makes resident->tree that of the geometry as it is now; cheap where it is already. False when memory
+// ends.
+bool resident_need_tree(struct resident *resident);
 
 // Which space a texture slot reads from.
 int resident_texture_space(int slot);

@@ -48,8 +48,19 @@ void main()
 #else
 layout(std430, binding = BIND_INDIRECT) readonly buffer indirect_storage
 {
-    vec4 gathered_sums[];
+    vec4 gathered_sums[]; // FILTERED 1: and behind them means of neighbours
 };
+
+// What a pixel has gathered; sums unless FILTERED.
+vec4 gathered_at(uint at)
+{
+#if FILTERED
+    uvec2 size = (frame.size.xy + uint(GATHER) - 1u) / uint(GATHER);
+    return gathered_sums[size.x * size.y + at];
+#else
+    return gathered_sums[at] / voxels.settle.y;
+#endif
+}
 
 #if GATHER == 2
 // Joint bilateral upsampling (Kopf et al. 2007): the four gathered pixels around, by distance, and by
@@ -73,7 +84,7 @@ vec4 gathered_light(surface s, uvec2 pixel)
                     voxels.levels[0].size.y;
         float cosine = max(dot(other.normal, s.normal), 0.0);
         float w = (near.x * near.y + 1e-3) * exp(-4.0 * off) * pow(cosine, 8.0) + 1e-7;
-        sum += w * gathered_sums[uint(place.y) * size.x + uint(place.x)];
+        sum += w * gathered_at(uint(place.y) * size.x + uint(place.x));
         weight += w;
     }
     return weight > 0.0 ? sum / weight : vec4(0.0);
@@ -95,8 +106,8 @@ void main()
 #if GATHER == 2
     vec4 light = gathered_light(s, pixel);
 #else
-    vec4 light = gathered_sums[at];
+    vec4 light = gathered_at(at);
 #endif
-    radiance[at].rgb += reflect_irradiance(s, light / voxels.settle.y);
+    radiance[at].rgb += reflect_irradiance(s, light);
 }
 #endif

@@ -1,5 +1,5 @@
-// Adds what glossy surfaces mirror, by cones, in the tiles that hold any (one group each). In:
-// tiles, G-buffer, radiance texture. Out: radiance in cd/m^2.
+// Adds what glossy surfaces mirror, by cones or (RAYS 1) as rays have found it, in the tiles that hold
+// any (one group each). In: tiles, G-buffer, radiance texture. Out: radiance in cd/m^2.
 #define CONE_SMOOTH 1
 #define CONE_SKIP 1
 #include "lib/gbuffer.glsl"
@@ -16,13 +16,29 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
     uint tiles[];
 };
 
-vec3 mirrored_light(surface s)
+#if RAYS
+layout(std430, binding = BIND_INDIRECT) readonly buffer indirect_storage
+{
+    vec4 gathered[]; // sums of irradiance, means of it, then sums of what lobes mirror; w: their number
+};
+
+// What rays have found for the square of pixels that shares them.
+vec3 mirrored_light(surface s, uvec2 pixel)
+{
+    uvec2 size = (frame.size.xy + uint(GATHER_STEP) - 1u) / uint(GATHER_STEP);
+    uvec2 place = pixel / uint(GATHER_STEP);
+    vec4 found = gathered[2u * size.x * size.y + place.y * size.x + place.x];
+    return found.rgb / max(found.a, 1.0);
+}
+#else
+vec3 mirrored_light(surface s, uvec2 pixel)
 {
     vec3 mirror = reflect(-s.view, s.normal);
     // A normal map can turn the mirror ray into the surface.
     mirror += s.geometric_normal * max(0.01 - dot(mirror, s.geometric_normal), 0.0);
     return trace_gloss(s.position, s.geometric_normal, normalize(mirror), s.roughness);
 }
+#endif
 
 // An invocation takes 2x2 pixels; with SHARED 1 those of about the same normal and roughness take what
 // the first of them has traced.
@@ -43,7 +59,7 @@ void main()
         bool shared_light = SHARED != 0 && dot(s.normal, known_normal) > 0.99 &&
                             abs(s.roughness - known_roughness) < 0.1;
         if (!shared_light) {
-            light = mirrored_light(s);
+            light = mirrored_light(s, pixel);
             known_normal = s.normal;
             known_roughness = s.roughness;
         }

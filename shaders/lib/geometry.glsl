@@ -28,7 +28,7 @@ struct triangle {
     uint instance;
     uvec3 words;   // where each vertex starts in `vertices`
     mat3 linear;   // of world_from_local
-    vec3 corner;   // first corner minus the eye
+    vec3 corner;   // first corner minus where rays come from
     vec3 edges[2]; // from the first corner
     vec3 volumes[3]; // dotted with a ray: the determinant, and those of the second and third weight
 };
@@ -59,8 +59,22 @@ vec3 fetch_direction(uint word)
     return bits == VERTEX_NO_DIRECTION ? vec3(0.0) : octahedral_decode(unpackSnorm2x16(bits));
 }
 
-// `id` is a visibility id above 0.
-triangle fetch_triangle(uint id)
+// A ray, those through the pixels to the right and below, and the pixel that it is for.
+struct sight {
+    vec3 origin; // world
+    vec3 direction;
+    vec3 dx; // added to the direction
+    vec3 dy;
+    vec2 pixel;
+};
+
+sight pixel_sight(vec2 pixel)
+{
+    return sight(frame.eye.xyz, ray_direction(pixel), frame.ray_dx.xyz, frame.ray_dy.xyz, pixel);
+}
+
+// `id` is a visibility id above 0; `eye` is where rays come from.
+triangle fetch_triangle(uint id, vec3 eye)
 {
     triangle t;
     t.instance = id_block_instances[(id - 1u) >> ID_BLOCK_BITS];
@@ -68,7 +82,7 @@ triangle fetch_triangle(uint id)
     t.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
     mat4 world_from_local = instances[t.instance].world_from_local;
     t.linear = mat3(world_from_local);
-    vec3 origin = world_from_local[3].xyz - frame.eye.xyz;
+    vec3 origin = world_from_local[3].xyz - eye;
     vec3 local = fetch3(t.words.x);
     t.corner = t.linear * local + origin;
     t.edges[0] = t.linear * (fetch3(t.words.y) - local);
@@ -79,7 +93,7 @@ triangle fetch_triangle(uint id)
     return t;
 }
 
-// Where a ray from the eye meets the triangle's plane: weights of the three corners (Moller and
+// Where a ray from there meets the triangle's plane: weights of the three corners (Moller and
 // Trumbore 1997). Also right outside the triangle.
 vec3 plane_weights(triangle t, vec3 direction)
 {
@@ -131,17 +145,17 @@ vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
 }
 #endif
 
-// Evaluates what a ray through `pixel` sees of the triangle. Back faces are turned to the viewer.
-surface load_surface(uint id, vec2 pixel, out layer through)
+// Evaluates what a ray sees of the triangle. Back faces are turned to the viewer.
+surface load_surface(uint id, sight ray, out layer through)
 {
-    triangle t = fetch_triangle(id);
-    vec3 direction = ray_direction(pixel);
+    triangle t = fetch_triangle(id, ray.origin);
+    vec3 direction = ray.direction;
     vec3 weights = plane_weights(t, direction);
     material_block material = materials[instances[t.instance].info.y];
 
     surface s;
     s.view = -normalize(direction);
-    s.position = frame.eye.xyz + t.corner + weights.y * t.edges[0] + weights.z * t.edges[1];
+    s.position = ray.origin + t.corner + weights.y * t.edges[0] + weights.z * t.edges[1];
     vec3 face = -t.volumes[0];
     float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     s.geometric_normal = safe_normalize(face * mirrored, s.view);
@@ -165,9 +179,9 @@ surface load_surface(uint id, vec2 pixel, out layer through)
 #if TEXTURED
     if (material.info.z != 0u) {
         texture_point point;
-        point.level_dither = dither_level(pixel);
-        vec3 weights_dx = plane_weights(t, direction + frame.ray_dx.xyz);
-        vec3 weights_dy = plane_weights(t, direction + frame.ray_dy.xyz);
+        point.level_dither = dither_level(ray.pixel);
+        vec3 weights_dx = plane_weights(t, direction + ray.dx);
+        vec3 weights_dy = plane_weights(t, direction + ray.dy);
 #if SECOND_UV_SET
         vec4 uv[3] = {fetch4(t.words.x + VERTEX_UV), fetch4(t.words.y + VERTEX_UV), fetch4(t.words.z + VERTEX_UV)};
 #else

@@ -37,7 +37,7 @@ uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
         uint base = pixels + 2u * (slot - 1u);
         uint id = fragment_words[base + 1u];
         slot = fragment_words[base];
-        triangle t = fetch_triangle(id);
+        triangle t = fetch_triangle(id, frame.eye.xyz);
         vec3 w = plane_weights(t, direction);
         float along = dot(frame.forward.xyz, t.corner + w.y * t.edges[0] + w.z * t.edges[1]);
         if (count == MAX_BLENDED_LAYERS) {
@@ -128,7 +128,7 @@ void main()
     vec3 sum = radiance[at].rgb;
     for (uint i = 0u; i < count; i++) {
         layer through;
-        surface s = load_surface(layers[i], vec2(pixel), through);
+        surface s = load_surface(layers[i], pixel_sight(vec2(pixel)), through);
         vec3 behind = sum;
 #if REFRACTION
         if (through.thickness_m > 0.0 && through.transmission > 0.0)

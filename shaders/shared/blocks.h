@@ -24,6 +24,7 @@ struct frame_block {
     vec4 textures;    // most samples of an anisotropic look-up, near plane of lamps' shadow views,
                       // 1 if samplers read one level only and want dithering, roughness beyond
                       // which no surface has a reflection of its own
+    vec4 tree; // world: where places in the tree of triangles count from; w: least offset of rays, m
     // From (u, v, depth) in the sun's view of the scene to each cascade, smallest first.
     vec4 cascade_scales[MAX_CASCADES]; // w: layer of the shadow map
     vec4 cascade_offsets[MAX_CASCADES];
@@ -78,7 +79,7 @@ struct shadow_view_block {
 #ifdef __STDC__
 #define BLOCK_VECTORS(block, count)                                                                \
     static_assert(sizeof(struct block) == (count) * sizeof(vec4), #block " has no padding")
-BLOCK_VECTORS(frame_block, 16 + 2 * MAX_CASCADES);
+BLOCK_VECTORS(frame_block, 17 + 2 * MAX_CASCADES);
 BLOCK_VECTORS(instance_block, 5);
 BLOCK_VECTORS(material_block, 7);
 BLOCK_VECTORS(texture_block, 3);

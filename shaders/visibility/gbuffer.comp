@@ -17,5 +17,5 @@ void main()
         return;
     }
     layer through;
-    gbuffer_store(pixel, load_surface(id, vec2(pixel), through));
+    gbuffer_store(pixel, load_surface(id, pixel_sight(vec2(pixel)), through));
 }

@@ -74,9 +74,13 @@ export async function openScene(scene) {
   }
 }
 
-/** Waits until this page's edits are shown and the picture is done and has not changed for `ms`. */
+/** Waits until this page's edits and camera are shown and the picture is done and has not changed for `ms`. */
 export async function untilStill(page, ms = 500) {
-  await page.waitForFunction(() => globalThis.voxcast.timer.waiting.size === 0);
+  await page.waitForFunction(
+    () =>
+      globalThis.voxcast.timer.waiting.size === 0 &&
+      Number(document.getElementById('stage').dataset.cameraRevision) >= globalThis.voxcast.sender.revision,
+  );
   const state = () => page.locator('#stage').evaluate(({ dataset }) => [dataset.frame, dataset.converged].join());
   let last;
   do {
