@@ -48,10 +48,10 @@ export function stepsOf(rungs) {
     for (const rung of rungs) {
       const { [key]: value = null, ...others } = factsOf(rung);
       const at = values.indexOf(value);
-      if (at < 0 || at + 1 === values.length) continue;
-      const next = values[at + 1];
-      const after = byFacts.get(keyOf(next === null ? others : { ...others, [key]: next }));
-      if (after) steps.push({ key, from: value ?? isDefault, to: next ?? isDefault, changes: changesOf(rung, after) });
+      const withValue = (other) => byFacts.get(keyOf(other === null ? others : { ...others, [key]: other }));
+      const next = at < 0 ? undefined : values.slice(at + 1).find(withValue);
+      if (next === undefined) continue;
+      steps.push({ key, from: value ?? isDefault, to: next ?? isDefault, changes: changesOf(rung, withValue(next)) });
     }
   return steps;
 }

@@ -65,7 +65,7 @@ function rungTables(run) {
   const parts = [rows(sorted.filter(isShown))];
   const others = sorted.filter((rung) => !isShown(rung));
   const meanings = sorted.map((rung) => `- \`${rung.name}\`: ${settingText(rung)}`).join('\n');
-  if (others.length > 0) parts.push(`<details><summary>The other ${others.length} settings</summary>\n\n${rows(others)}\n\n</details>`);
+  if (others.length > 0) parts.push(`<details><summary>${others.length} more</summary>\n\n${rows(others)}\n\n</details>`);
   parts.push(`<details><summary>What the names mean</summary>\n\n${meanings}\n\n</details>`);
   return parts.join('\n\n');
 }
