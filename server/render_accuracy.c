@@ -34,7 +34,7 @@ static bool prepare(struct render_thread *thread, const struct render_client *cl
 void render_run_accuracy_start(struct render_thread *thread, struct render_client *client,
                                const struct command *command)
 {
-    struct accuracy_ticket ticket;
+    struct accuracy_ticket ticket = {0};
     struct error error = {""};
     struct rpc_error reply;
     if (thread->settings.gi_method == GI_METHOD_REFERENCE) {
@@ -54,6 +54,8 @@ void render_run_accuracy_start(struct render_thread *thread, struct render_clien
     cJSON_AddNumberToObject(result, "rung_count", ticket.rung_count);
     cJSON_AddNumberToObject(result, "width", ticket.width);
     cJSON_AddNumberToObject(result, "height", ticket.height);
+    cJSON_AddNumberToObject(result, "epoch", (double)thread->epoch);
+    cJSON_AddNumberToObject(result, "revision", (double)thread->revision);
     render_clear_rung(thread, client);
     render_reply(thread, command, result);
     accuracy_service_submit(thread->params.accuracy, client->client_id);
