@@ -49,7 +49,10 @@ function fakeMeasuring() {
     if (!method.startsWith('accuracy.') && !(method === 'view.configure' && 'rung' in params)) return real(method, params);
     made.calls.push({ method, params });
     if (made.refusal) return Promise.reject(Object.assign(new Error(made.refusal), { data: {} }));
-    return Promise.resolve(method === 'accuracy.start' ? { measurement: `m${++made.id}`, rung_count: 5, width: 64, height: 36 } : {});
+    if (method !== 'accuracy.start') return Promise.resolve({});
+    return real('scene.get').then(({ epoch, revision }) => {
+      return { measurement: `m${++made.id}`, rung_count: 5, width: 64, height: 36, epoch, revision };
+    });
   };
   made.tell = (params) => {
     const detail = { method: 'accuracy.progress', params: { measurement: `m${made.id}`, rung_count: 5, done: 0, noise_wanted: 0.01, ...params } };

@@ -87,9 +87,9 @@ function makeMeasurement() {
 
 const settle = () => new Promise((done) => setTimeout(done, 5));
 
-async function begin({ server, measurement }, id = 'a1') {
+async function begin({ server, measurement }, id = 'a1', revision = 40) {
   const started = measurement.start({ ladder: 'quick', noise: 0.01 });
-  server.reply({ measurement: id, rung_count: 6, width: 64, height: 36 });
+  server.reply({ measurement: id, rung_count: 6, width: 64, height: 36, epoch: 1, revision });
   await started;
   await settle();
 }
@@ -140,21 +140,27 @@ test('another scene leaves nothing', async () => {
   assert.ok(!both.measurement.isRunning);
 });
 
-test('says what has been edited since', async () => {
+test('says what has been edited since, by revisions', async () => {
   const both = makeMeasurement();
   const scene = new SceneDocument();
+  const connection = new EventTarget();
   scene.load({ lights: [{ id: 0 }], settings: {}, animations: [], nodes: [], materials: [] });
-  const watch = new EditWatch(scene, both.measurement);
-  const edit = (method, id) => scene.apply({ method, id, set: { any: 1 } }, () => false);
-  edit('light.update', 0);
+  const watch = new EditWatch(connection, scene, both.measurement);
+  const edit = (method, revision) => {
+    const detail = { method: 'scene.changed', params: { edits: [{ method, revision }] } };
+    connection.dispatchEvent(new CustomEvent('notification', { detail }));
+  };
+  edit('light.update', 39);
   assert.equal(watch.words, '');
   await begin(both);
   assert.equal(watch.words, '');
-  edit('settings.update');
+  edit('light.update', 40); // was on its way
+  assert.equal(watch.words, '');
+  edit('settings.update', 41);
   assert.match(watch.words, /settings/);
-  edit('light.update', 0);
+  edit('light.update', 42);
   assert.match(watch.words, /scene has been edited/);
-  await begin(both, 'b2');
+  await begin(both, 'b2', 42);
   assert.equal(watch.words, '');
   scene.data.animations.push({ id: 0, playing: true });
   assert.match(watch.words, /animation/);

@@ -1,43 +1,39 @@
 /**
- * Knows whether the document has changed since it was measured.
+ * Knows whether the document has changed since it was measured: by revisions, so that edits which were on their
+ * way when the measurement began count as what they are.
  * Event: `changed`.
  */
 export class EditWatch extends EventTarget {
   /**
+   * @param {import('../net/connection.js').Connection} connection
    * @param {import('../scene/scene_document.js').SceneDocument} document
    * @param {import('./measurement.js').Measurement} measurement
    */
-  constructor(document, measurement) {
+  constructor(connection, document, measurement) {
     super();
     this.document = document;
     this.measurement = measurement;
-    /** Whether lights, materials, objects or surroundings are others than those measured. */
-    this.isScene = false;
-    /** Whether the shared settings are. */
-    this.isSettings = false;
-    // An edit that the server had before it measured has come back by the time it replies.
-    measurement.addEventListener('begun', () => this.#set(false, false));
-    document.addEventListener('structure', () => this.#set(true, this.isSettings));
-    document.addEventListener('changed', (event) => {
-      const isSettings = /** @type {CustomEvent} */ (event).detail.group === 'settings';
-      this.#set(this.isScene || !isSettings, this.isSettings || isSettings);
+    /** Revisions of the newest edit of lights, materials, objects or surroundings, and of the shared settings. */
+    this.newest = { scene: 0, settings: 0 };
+    connection.addEventListener('notification', (event) => {
+      const { method, params } = /** @type {CustomEvent} */ (event).detail;
+      if (method === 'scene.changed') this.#take(params.edits);
     });
   }
 
   /** What people should know, in words; "" if nothing has changed. */
   get words() {
-    if (!this.measurement.id) return '';
+    const { id, revision } = this.measurement;
+    if (!id) return '';
     const isMoving = this.document.data?.animations.some((/** @type {any} */ { playing }) => playing);
     if (isMoving) return 'An animation runs: the truth shows the moment that was measured.';
-    if (this.isScene) return 'The scene has been edited since it was measured: the figures are those of before.';
-    if (this.isSettings) return 'The settings have changed since: “live” stands for those of before.';
+    if (this.newest.scene > revision) return 'The scene has been edited since it was measured: the figures are those of before.';
+    if (this.newest.settings > revision) return 'The settings have changed since: “live” stands for those of before.';
     return '';
   }
 
-  #set(/** @type {boolean} */ isScene, /** @type {boolean} */ isSettings) {
-    if (isScene === this.isScene && isSettings === this.isSettings) return;
-    this.isScene = isScene;
-    this.isSettings = isSettings;
+  #take(/** @type {{method: string, revision: number}[]} */ edits) {
+    for (const { method, revision } of edits) this.newest[method === 'settings.update' ? 'settings' : 'scene'] = revision;
     this.dispatchEvent(new Event('changed'));
   }
 }

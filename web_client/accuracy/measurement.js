@@ -32,6 +32,8 @@ export class Measurement extends EventTarget {
     this.baseUrl = baseUrl;
     this.getJson = getJson;
     this.id = '';
+    /** Of the document that was measured. */
+    this.revision = 0;
     /** @type {Progress | null} */
     this.progress = null;
     /** @type {any} what results.json holds; null before the first rung */
@@ -67,8 +69,8 @@ export class Measurement extends EventTarget {
    * @param {{ladder: string, noise: number}} params noise: standard error over mean luminance
    */
   async start(params) {
-    const { measurement, rung_count } = await this.connection.call('accuracy.start', params);
-    this.#begin(measurement);
+    const { measurement, rung_count, revision } = await this.connection.call('accuracy.start', params);
+    this.#begin(measurement, revision);
     const early = this.stray?.measurement === measurement ? this.stray : null;
     this.takeProgress(early ?? { measurement, state: 'queued', done: 0, rung_count });
   }
@@ -79,7 +81,7 @@ export class Measurement extends EventTarget {
 
   /** Nothing is measured: another scene, or the connection is another one. */
   forget() {
-    this.#begin('');
+    this.#begin('', 0);
     this.dispatchEvent(new Event('changed'));
   }
 
@@ -96,8 +98,9 @@ export class Measurement extends EventTarget {
     this.dispatchEvent(new Event('changed'));
   }
 
-  #begin(/** @type {string} */ id) {
+  #begin(/** @type {string} */ id, /** @type {number} */ revision) {
     this.id = id;
+    this.revision = revision;
     this.progress = null;
     this.results = null;
     this.hasReference = false;

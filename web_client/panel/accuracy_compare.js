@@ -70,7 +70,10 @@ export class AccuracyCompare {
   }
 
   #describe(/** @type {boolean} */ hasTruth, /** @type {any} */ shown) {
-    if (!hasTruth) return 'Measure the view first: then the truth can be laid beside the picture.';
+    if (!hasTruth)
+      return this.app.measurement.isRunning
+        ? 'The truth can be laid beside the picture once the first setting has been measured.'
+        : 'Measure the view first: then the truth can be laid beside the picture.';
     if (this.mode === 'split') return 'Drag the line over the picture, or move it by the arrow keys: live on its left, truth on its right.';
     if (this.mode === 'error') return `Where the final picture of ${shown.name} errs, by LDR-FLIP.`;
     return '';

@@ -29,7 +29,7 @@ export class AccuracyTab {
       element('h2', {}, 'Over the picture'),
       compare,
     );
-    this.edits = new EditWatch(app.document, measurement);
+    this.edits = new EditWatch(app.connection, app.document, measurement);
     this.measure = new AccuracyMeasure(form, app);
     this.budget = new AccuracyBudget(budget, app, {
       onChoose: (name) => this.#draw(name),
@@ -41,7 +41,10 @@ export class AccuracyTab {
     });
     this.compare = new AccuracyCompare(compare, app);
     for (const event of ['begun', 'results']) measurement.addEventListener(event, () => this.refresh());
-    measurement.addEventListener('changed', () => this.budget.refresh());
+    measurement.addEventListener('changed', () => {
+      this.budget.refresh();
+      this.compare.refresh();
+    });
     this.edits.addEventListener('changed', () => this.#showEdits());
     view.addEventListener('rung', () => this.refresh());
     this.refresh();
