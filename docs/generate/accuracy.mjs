@@ -12,6 +12,9 @@ import { SCENES } from './accuracy_scenes.mjs';
 
 const ROOT = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
 
+// As the tests have it.
+const SCENES_FOLDER = process.env.VOXCAST_SCENES || join(ROOT, '../shared/scenes');
+
 const USAGE = `usage: ./dev accuracy [OPTIONS]
 
 Measures every scene by voxcast accuracy and writes docs/accuracy.md. The machine should have nothing else to do.
@@ -26,7 +29,8 @@ What has been measured by the same program is kept; a run that was stopped goes 
   --out DIR        where measurements are kept (default build/accuracy)
   --docs DIR       where the page is written (default docs)
   --page-only      measure nothing; write the page of what is there
-Scenes that are not shipped are read from the folder VOXCAST_SCENES; without it they are left out.
+Scenes that are not shipped are read from the folder VOXCAST_SCENES, or else ../shared/scenes; what is not there is
+left out.
 `;
 
 const fail = (message, status = 1) => {
@@ -66,9 +70,8 @@ function chooseScenes(names) {
 /** What voxcast is to load; null if it is not there. */
 function sourceOf(scene) {
   if (scene.source) return scene.source;
-  const folder = process.env.VOXCAST_SCENES;
-  const path = folder && join(folder, scene.path);
-  return path && existsSync(path) ? path : null;
+  const path = join(SCENES_FOLDER, scene.path);
+  return existsSync(path) ? path : null;
 }
 
 /** False if it failed: voxcast has said why. */
@@ -113,7 +116,7 @@ const scenes = chooseScenes(options.scenes);
 const failed = [];
 for (const scene of options['page-only'] ? [] : scenes) {
   const source = sourceOf(scene);
-  if (!source) process.stderr.write(`accuracy: ${scene.name} is left out: VOXCAST_SCENES has no ${scene.path}\n`);
+  if (!source) process.stderr.write(`accuracy: ${scene.name} is left out: ${SCENES_FOLDER} has no ${scene.path}\n`);
   else if (!measure(scene, source, options, join(options.out, scene.name))) failed.push(scene.name);
 }
 const found = scenes.map((scene) => ({ scene, run: loadRun(scene, join(options.out, scene.name)) }));
