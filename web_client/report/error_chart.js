@@ -13,6 +13,7 @@
 globalThis.errorChart = (() => {
   const COLORS = { none: '#8a8f99', clipmap: '#d9622b', grid: '#2b7fd9' };
   const OTHER_COLOR = '#3a9a5b';
+  const MARK_RADIUS = 7;
   const LETTER_WIDTH = 6; // of a name, about
   const LETTER_HEIGHT = 11;
   const TICK_STEPS = [[1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9], [1, 2, 3, 5], [1, 2, 5], [1, 3], [1]];
@@ -148,26 +149,42 @@ globalThis.errorChart = (() => {
     return shapes;
   }
 
-  /** A name beside a mark where it meets none of `taken`; null if there is no such place, unless it must be shown. */
-  function labelShape(text, { cx, cy, area, taken, mustShow }) {
+  const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+
+  /** Where a name may stand beside a mark: the best place first. */
+  function labelPlaces(text, cx, cy, area) {
     const width = LETTER_WIDTH * text.length;
     const isLeftFirst = cx > area.left + 0.6 * (area.right - area.left);
     const sides = isLeftFirst ? ['end', 'start'] : ['start', 'end'];
-    for (const rise of [-7, 16])
-      for (const anchor of sides) {
+    return [-7, 16].flatMap((rise) =>
+      sides.map((anchor) => {
         const x = cx + (anchor === 'end' ? -11 : 11);
         const left = anchor === 'end' ? x - width : x;
-        const box = { left, right: left + width, top: cy + rise - LETTER_HEIGHT, bottom: cy + rise };
-        const meets = taken.some((other) => box.left < other.right && other.left < box.right && box.top < other.bottom && other.top < box.bottom);
-        const fits = box.left >= area.left && box.right <= area.right && box.bottom <= area.bottom;
-        if (!mustShow && (meets || !fits)) continue;
-        taken.push(box);
-        return { tag: 'text', attributes: { class: 'name', x, y: cy + rise, 'text-anchor': anchor }, text };
-      }
-    return null;
+        return { x, y: cy + rise, anchor, left, right: left + width, top: cy + rise - LETTER_HEIGHT, bottom: cy + rise };
+      }),
+    );
   }
 
-  function pointShapes(point, { x, y, area, taken }, { isLarge, isLabelled, isMarked, classes, ring }) {
+  /** Names of points, those that must be shown first, where they cover no other name and no mark. */
+  function labelShapes(labelled, all, { x, y, area }) {
+    const taken = all.map(({ ms, error }) => {
+      const [cx, cy] = [x.scale(ms), y.scale(error)];
+      return { left: cx - MARK_RADIUS, right: cx + MARK_RADIUS, top: cy - MARK_RADIUS, bottom: cy + MARK_RADIUS };
+    });
+    const shapes = [];
+    for (const { point, mustShow } of [...labelled].sort((a, b) => Number(b.mustShow) - Number(a.mustShow))) {
+      const { name } = point.rung;
+      const places = labelPlaces(name, x.scale(point.ms), y.scale(point.error), area);
+      const fits = ({ left, right, bottom }) => left >= area.left && right <= area.right && bottom <= area.bottom;
+      const place = places.find((one) => fits(one) && !taken.some((other) => meets(one, other))) ?? (mustShow ? places[0] : null);
+      if (!place) continue;
+      taken.push(place);
+      shapes.push({ tag: 'text', attributes: { class: 'name', x: place.x, y: place.y, 'text-anchor': place.anchor }, text: name });
+    }
+    return shapes;
+  }
+
+  function pointShapes(point, { x, y }, { isLarge, classes, ring }) {
     const [cx, cy] = [x.scale(point.ms), y.scale(point.error)];
     const marks = [];
     if (ring) marks.push({ tag: 'circle', attributes: { class: `ring ${ring}`, cx, cy, r: isLarge ? 11 : 9 } });
@@ -176,14 +193,12 @@ globalThis.errorChart = (() => {
       class: classes,
       cx,
       cy,
-      r: isLarge ? 7 : 5,
+      r: isLarge ? MARK_RADIUS : 5,
       fill: colorOf(point.rung.method),
       'aria-label': name,
       'data-rung': point.rung.name,
     };
     marks.push({ tag: 'circle', attributes, point });
-    const label = isLabelled && labelShape(point.rung.name, { cx, cy, area, taken, mustShow: isMarked });
-    if (label) marks.push(label);
     return marks;
   }
 
@@ -208,7 +223,6 @@ globalThis.errorChart = (() => {
       x: logScale(points.map(({ ms }) => ms), area.left, area.right, isNarrow ? 26 : 34),
       y: logScale(points.map(({ error }) => error), area.bottom, area.top, 20),
       area,
-      taken: [],
       titles: { x: isNarrow ? time.short : time.title, y: isNarrow ? (metric?.title ?? '') : errorTitle(metric) },
     };
     const corners = front.map(({ ms, error }, i) => {
@@ -220,17 +234,19 @@ globalThis.errorChart = (() => {
     shapes.push({ tag: 'path', attributes: { class: 'front', d: corners.join('') } });
     for (const point of points) {
       const { name } = point.rung;
-      const isMarked = name === live || name === chosen;
       shapes.push(
         ...pointShapes(point, frame, {
           isLarge: front.includes(point),
-          isLabelled: isMarked || (labels === 'front' && front.includes(point)),
-          isMarked,
           classes: name === live ? 'point live' : 'point',
           ring: name === chosen ? 'chosen' : name === live ? 'live' : '',
         }),
       );
     }
+    const mustShow = ({ rung: { name } }) => name === live || name === chosen;
+    const labelled = points
+      .filter((point) => mustShow(point) || (labels === 'front' && front.includes(point)))
+      .map((point) => ({ point, mustShow: mustShow(point) }));
+    shapes.push(...labelShapes(labelled, points, frame));
     return shapes;
   }
 
