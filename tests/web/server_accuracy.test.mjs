@@ -205,6 +205,10 @@ describe('accuracy', () => {
     const results = await (await get(daemon, measured.measurement, 'results.json')).json();
     assert.equal(results.rungs.length, end.done, 'what has been measured stays');
     assert.ok(results.rungs.every(({ edit }) => !edit.error), 'no rung is there in part');
+    // Many at once are one in the end.
+    const replies = await Promise.all(Array.from({ length: 40 }, () => client.call('accuracy.start', {})));
+    assert.equal(new Set(replies.map(({ result }) => result.measurement)).size, 40);
+    await client.until(() => folders().length === 1, 'the folders of all but the last are gone');
     // One that waits ends at once; one whose client leaves leaves nothing.
     const second = await arrive(daemon);
     const running = await start(client, { noise: 0.0005 });
