@@ -26,10 +26,11 @@ globalThis.ErrorChartView = class {
     this.#svg.setAttribute('viewBox', `0 0 ${params.width} ${params.height}`);
     this.#svg.replaceChildren();
     this.#marks = [];
-    for (const shape of globalThis.errorChart.shapesOf(params))
+    for (const shape of globalThis.errorChart.shapesOf(params)) {
+      if (shape.point && this.#marks.length === 0) this.#svg.append(group);
       if (shape.point) this.#addMark(group, shape, params.chosen);
       else this.#make(this.#svg, shape).setAttribute('aria-hidden', 'true');
-    if (this.#marks.length > 0) this.#svg.append(group);
+    }
     this.#marks.sort((a, b) => a.point.ms - b.point.ms);
     const current = this.#marks.find(({ point }) => point.rung.name === this.#current) ?? this.#marks[0];
     if (current) this.#moveTo(current, focused !== '' && focused === current.point.rung.name);

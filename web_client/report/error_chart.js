@@ -184,23 +184,24 @@ globalThis.errorChart = (() => {
     return shapes;
   }
 
-  function pointShapes(point, { x, y }, { isLarge, classes, ring }) {
-    const [cx, cy] = [x.scale(point.ms), y.scale(point.error)];
-    const marks = [];
-    if (ring) marks.push({ tag: 'circle', attributes: { class: `ring ${ring}`, cx, cy, r: isLarge ? 11 : 9 } });
-    const name = `${point.rung.name}: ${short(point.ms)} ms, error ${short(point.error)}`;
+  function pointShape(point, { x, y }, { isLarge, isLive }) {
     const attributes = {
-      class: classes,
-      cx,
-      cy,
+      class: isLive ? 'point live' : 'point',
+      cx: x.scale(point.ms),
+      cy: y.scale(point.error),
       r: isLarge ? MARK_RADIUS : 5,
       fill: colorOf(point.rung.method),
-      'aria-label': name,
+      'aria-label': `${point.rung.name}: ${short(point.ms)} ms, error ${short(point.error)}`,
       'data-rung': point.rung.name,
     };
-    marks.push({ tag: 'circle', attributes, point });
-    return marks;
+    return { tag: 'circle', attributes, point };
   }
+
+  /** Marks the rung that is live, or the one that is chosen. */
+  const ringShape = (point, { x, y }, name) => ({
+    tag: 'circle',
+    attributes: { class: `ring ${name}`, cx: x.scale(point.ms), cy: y.scale(point.error), r: MARK_RADIUS + 4 },
+  });
 
   /**
    * What the chart consists of, in the order of drawing.
@@ -232,20 +233,15 @@ globalThis.errorChart = (() => {
     const noise = results.noise?.[choice.part]?.[choice.metric]?.reference ?? 0;
     const shapes = [...axisShapes(frame), ...limitShapes(frame, noise, choice.time === 'frame' ? budgetMs : 0)];
     shapes.push({ tag: 'path', attributes: { class: 'front', d: corners.join('') } });
-    for (const point of points) {
-      const { name } = point.rung;
-      shapes.push(
-        ...pointShapes(point, frame, {
-          isLarge: front.includes(point),
-          classes: name === live ? 'point live' : 'point',
-          ring: name === chosen ? 'chosen' : name === live ? 'live' : '',
-        }),
-      );
-    }
-    const mustShow = ({ rung: { name } }) => name === live || name === chosen;
+    const ringOf = ({ rung: { name } }) => (name === chosen ? 'chosen' : name === live ? 'live' : '');
+    // What is marked lies above the rest.
+    const ordered = [...points].sort((a, b) => Number(ringOf(a) !== '') - Number(ringOf(b) !== ''));
+    for (const point of ordered)
+      shapes.push(pointShape(point, frame, { isLarge: front.includes(point), isLive: point.rung.name === live }));
+    for (const point of ordered) if (ringOf(point)) shapes.push(ringShape(point, frame, ringOf(point)));
     const labelled = points
-      .filter((point) => mustShow(point) || (labels === 'front' && front.includes(point)))
-      .map((point) => ({ point, mustShow: mustShow(point) }));
+      .filter((point) => ringOf(point) || (labels === 'front' && front.includes(point)))
+      .map((point) => ({ point, mustShow: ringOf(point) !== '' }));
     shapes.push(...labelShapes(labelled, points, frame));
     return shapes;
   }
