@@ -7,7 +7,7 @@
 
 #include <cjson/cJSON.h>
 
-enum field_kind { FIELD_INTEGER, FIELD_NUMBER, FIELD_BOOL, FIELD_STRING };
+enum field_kind { FIELD_INTEGER, FIELD_NUMBER, FIELD_BOOL, FIELD_STRING, FIELD_CHOICE };
 
 enum field_bit {
     TARGET = 1 << 0,
@@ -26,14 +26,20 @@ enum field_bit {
     PIXEL_Y = 1 << 13,
     SET = 1 << 14,  // an object of parameters
     FLAT = 1 << 15, // parameters beside the fields
+    LADDER = 1 << 16,
+    NOISE = 1 << 17,
 };
 
 struct field {
     const char *name;
     uint32_t bit;
     enum field_kind kind;
-    double min, max; // of a number; max bytes of a string
+    double min, max;            // of a number; max bytes of a string
+    const char *const *choices; // ended by NULL
 };
+
+const char *const command_ladder_names[LADDER_COUNT + 1] = {
+    [LADDER_QUICK] = "quick", [LADDER_FULL] = "full"};
 
 static const struct field fields[] = {
     {"id", TARGET, FIELD_INTEGER, 0, UINT32_MAX - 1.0},
@@ -50,6 +56,8 @@ static const struct field fields[] = {
     {"source", SOURCE, FIELD_STRING, 0, PROTOCOL_MAX_SOURCE_BYTES},
     {"x", PIXEL_X, FIELD_NUMBER, 0, 3840},
     {"y", PIXEL_Y, FIELD_NUMBER, 0, 2160},
+    {"ladder", LADDER, FIELD_CHOICE, 0, 0, command_ladder_names},
+    {"noise", NOISE, FIELD_NUMBER, 0.0005, 0.1},
 };
 
 struct method_row {
@@ -88,6 +96,8 @@ static const struct method_row methods[METHOD_COUNT] = {
     [METHOD_EDIT_REDO] = {"edit.redo", METHOD_EDITS, GROUP_COUNT, EDIT_ID, 0},
     [METHOD_PICK] = {"pick", 0, GROUP_COUNT, PIXEL_X | PIXEL_Y, PIXEL_X | PIXEL_Y},
     [METHOD_FRAME_ACK] = {"frame.ack", 0, GROUP_COUNT, FRAME_ID, FRAME_ID},
+    [METHOD_ACCURACY_START] = {"accuracy.start", 0, GROUP_COUNT, LADDER | NOISE, 0},
+    [METHOD_ACCURACY_CANCEL] = {"accuracy.cancel", 0, GROUP_COUNT, 0, 0},
 };
 
 const char *method_name(enum method method)
@@ -121,11 +131,35 @@ static bool check_number(const struct field *field, const cJSON *item, struct rp
     return false;
 }
 
+// The place of a text in a list that NULL ends, or the list's length.
+static uint32_t find_choice(const char *const *choices, const cJSON *item)
+{
+    uint32_t i = 0;
+    while (choices[i] && !(cJSON_IsString(item) && strcmp(choices[i], item->valuestring) == 0))
+        i++;
+    return i;
+}
+
+static bool check_choice(const struct field *field, const cJSON *item, struct rpc_error *error)
+{
+    if (field->choices[find_choice(field->choices, item)])
+        return true;
+    char list[256] = "";
+    for (size_t i = 0, used = 0; field->choices[i] && used < sizeof(list); i++)
+        used += (size_t)snprintf(list + used, sizeof(list) - used, "%s%s", i ? ", " : "",
+                                 field->choices[i]);
+    rpc_error_field(error, field->name, item, "%s is not one of %s", field->name, list);
+    error->allowed = field->choices;
+    return false;
+}
+
 static bool check_field(const struct field *field, const cJSON *item, struct rpc_error *error)
 {
     if (field->kind == FIELD_BOOL)
         return cJSON_IsBool(item) ||
                rpc_error_field(error, field->name, item, "%s must be true or false", field->name);
+    if (field->kind == FIELD_CHOICE)
+        return check_choice(field, item, error);
     if (field->kind != FIELD_STRING)
         return check_number(field, item, error);
     if (!cJSON_IsString(item))
@@ -181,6 +215,12 @@ static void store_field(const struct field *field, const cJSON *item, struct com
         break;
     case PIXEL_Y:
         command->y = number;
+        break;
+    case LADDER:
+        command->ladder = (enum command_ladder)find_choice(field->choices, item);
+        break;
+    case NOISE:
+        command->noise = number;
         break;
     case PROTOCOL:
     case SET:
@@ -269,6 +309,7 @@ bool command_parse(const struct rpc_request *request, struct command *out_comman
     memset(out_command, 0, sizeof(*out_command));
     out_command->id = request->id;
     out_command->target = COMMAND_NO_TARGET;
+    out_command->noise = COMMAND_DEFAULT_NOISE;
     uint32_t method = 0;
     while (method < METHOD_COUNT && strcmp(methods[method].name, request->method) != 0)
         method++;

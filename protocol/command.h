@@ -30,6 +30,8 @@ enum method {
     METHOD_EDIT_REDO,
     METHOD_PICK,
     METHOD_FRAME_ACK,
+    METHOD_ACCURACY_START,
+    METHOD_ACCURACY_CANCEL,
     METHOD_COUNT
 };
 
@@ -38,6 +40,12 @@ enum method_flags {
     METHOD_MERGES = 2, // a newer one of the same client, target and fields replaces a waiting one
 };
 
+// Which rungs accuracy.start measures.
+enum command_ladder { LADDER_QUICK, LADDER_FULL, LADDER_COUNT };
+
+extern const char *const command_ladder_names[LADDER_COUNT + 1]; // ended by NULL
+
+#define COMMAND_DEFAULT_NOISE  0.01
 #define COMMAND_MAX_VALUES     24u
 #define COMMAND_MAX_SUPERSEDED 32u
 #define COMMAND_NO_TARGET      UINT32_MAX
@@ -55,7 +63,9 @@ struct command {
     uint64_t revision; // of camera.set; frame_id of frame.ack
     bool has_resume;   // both of the following came
     uint64_t resume_epoch, resume_revision;
-    double x, y; // of pick
+    double x, y;                // of pick
+    enum command_ladder ladder; // of accuracy.start
+    double noise;               // likewise
     char name[PROTOCOL_MAX_NAME_BYTES + 1];
     char token[PROTOCOL_MAX_TOKEN_BYTES + 1];
     char source[PROTOCOL_MAX_SOURCE_BYTES + 1];

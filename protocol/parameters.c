@@ -200,6 +200,9 @@ static const struct parameter parameters[] = {
     ENUM_(GROUP_VIEW, "debug_face", 0, "\"+x\"", NAMES("+x", "-x", "+y", "-y", "+z", "-z"),
           "Which direction of the voxels the voxel pictures show."),
     BOOL_(GROUP_VIEW, "paused", 0, "false", "No frames while true."),
+    STRING_(GROUP_VIEW, "rung",
+            "Rung of this client's newest measurement of accuracy to draw its pictures with, "
+            "whatever the shared settings are; empty: with those."),
 
     VEC3_(GROUP_CAMERA, "eye", 0, ANY_PLACE_M, 0.1, "m", "[0,0,5]", "World position of the eye."),
     VEC3_(GROUP_CAMERA, "target", 0, ANY_PLACE_M, 0.1, "m", "[0,0,0]",

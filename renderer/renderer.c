@@ -30,6 +30,8 @@ struct renderer {
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
     struct live_scene live_scene; // of references
+    bool (*may_draw)(void *user); // NULL: always
+    void *user;
 };
 
 static const char *find_shader_dir(const struct renderer_params *params)
@@ -52,6 +54,8 @@ struct renderer *renderer_create(const struct renderer_params *params, struct er
         return NULL;
     }
     assert(passes_check(all_passes, PASS_COUNT, NULL));
+    renderer->may_draw = params->may_draw;
+    renderer->user = params->user;
     renderer->gpu = gpu_create(params->gpu, find_shader_dir(params), out_error);
     if (!renderer->gpu) {
         free(renderer);
@@ -136,7 +140,8 @@ static bool params_equal(const struct frame_params *a, const struct frame_params
     return memcmp(&a->camera, &b->camera, sizeof(a->camera)) == 0 && a->width == b->width &&
            a->height == b->height && a->quality == b->quality && a->debug_view == b->debug_view &&
            a->debug_level == b->debug_level && a->debug_face == b->debug_face &&
-           a->output == b->output && render_settings_equal(&a->settings, &b->settings);
+           a->output == b->output && a->own_voxels == b->own_voxels &&
+           render_settings_equal(&a->settings, &b->settings);
 }
 
 static bool same_surfaces(const struct view *view, const struct frame_params *params,
@@ -309,6 +314,10 @@ static float view_convergence(const struct frame *frame)
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error)
 {
+    if (renderer->may_draw && !renderer->may_draw(renderer->user)) {
+        error_set(out_error, "no more frames are wanted");
+        return RENDER_FAILED;
+    }
     double started_ms = clock_now_ms();
     if (!params_are_valid(params, out_error))
         return RENDER_FAILED;

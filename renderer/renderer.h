@@ -34,6 +34,10 @@ struct renderer_params {
     const char *gpu;        // "auto" (or NULL), "software", or a device index such as "0"
     const char *shader_dir; // NULL: VOXCAST_SHADER_DIR, the installed folder, or the source tree
     bool watch_shaders;     // reload shaders when their files change
+    // Called before each frame, whose time it is not part of: may wait until others have drawn.
+    // False refuses the frame. NULL: nobody is asked.
+    bool (*may_draw)(void *user);
+    void *user;
 };
 
 struct renderer_info {
@@ -78,6 +82,7 @@ struct frame_params {
     enum voxel_face debug_face; // likewise
     enum frame_output output;
     struct render_settings settings;
+    bool own_voxels;  // shares none with other views, since its settings are not theirs
     uint64_t user_id; // handed back with the pixels
 };
 

@@ -128,7 +128,7 @@ static bool prepare_cascades(struct view *view, struct shadow_map *map, uint32_t
         uint32_t number = shadow_map_take_cascade(map);
         if (number == UINT32_MAX)
             return false;
-        view->cascade_stale[view->cascade_count] = true;
+        view->cascade_placed[view->cascade_count] = false;
         view->cascade_numbers[view->cascade_count++] = number;
     }
     return true;

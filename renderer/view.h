@@ -54,7 +54,8 @@ struct view {
     uint32_t cascade_count;
     uint32_t cascade_numbers[MAX_CASCADES];
     float cascade_center[MAX_CASCADES][3];
-    bool cascade_stale[MAX_CASCADES];
+    bool cascade_placed[MAX_CASCADES]; // the centre above is to be kept while it suits
+    bool cascade_stale[MAX_CASCADES];  // to be drawn
     struct shadow_view_block cascades[MAX_CASCADES];
 
     struct ring_frame ring[RENDERER_FRAMES_IN_RING];

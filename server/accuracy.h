@@ -58,17 +58,43 @@ struct truth {
     double noise; // standard error over mean luminance; NaN if that is not known
 };
 
+enum accuracy_stage {
+    ACCURACY_TRACING,   // the truth; about twice a second
+    ACCURACY_TRACED,    // or loaded
+    ACCURACY_MEASURING, // rungs: before the first, and after each
+};
+
+// How far a run has come.
+struct accuracy_progress {
+    enum accuracy_stage stage;
+    uint32_t samples;            // of the truth, a pixel; 0 if it was loaded
+    double noise;                // of the truth; not finite while it is not known
+    uint32_t done, rung_count;   // rungs
+    const struct rung *measured; // the newest, in this run; NULL for none
+    const struct rung *next;     // NULL at the end
+    double measured_s;           // what `measured` took
+    double left_s;               // of this stage; NaN while it is not known
+};
+
+// Who is told how a run goes on, and may end it. Zero: nobody.
+struct accuracy_watch {
+    bool (*tell)(void *user, const struct accuracy_progress *progress); // false ends the run
+    void *user;
+};
+
 struct truth_params {
     const struct cli_shot *shot;
     const char *path, *direct_path; // files; NULL to trace
     uint32_t samples;               // a pixel, if until_noise is 0
     double until_noise;             // trace until the noise is no more than this
-    const char *folder;             // where a traced picture is kept, and found again
+    const char *folder;             // where a traced picture is kept, and found again, or NULL
     const struct cJSON *identity;   // says what scene and view is traced
+    bool low_priority;              // gives way to all others
+    struct accuracy_watch watch;
 };
 
-// Loads or traces the truth; tells on stderr how it goes. Tracing takes all processors. False with
-// a message, such as that a file is of another size; then nothing needs finishing.
+// Loads or traces the truth. Tracing takes all processors. False with a message, such as that a
+// file is of another size, or that the watch ended it; then nothing needs finishing.
 bool truth_get(const struct truth_params *params, struct truth *out_truth, struct error *out_error);
 void truth_finish(struct truth *truth);
 
@@ -95,8 +121,9 @@ bool accuracy_judge(const struct accuracy *accuracy, const struct picture *pictu
 struct cJSON *accuracy_measure(const struct accuracy *accuracy, const struct rung *rung,
                                struct error *out_error);
 
-// The scene as it was loaded and edited, and the view of it.
-struct cJSON *accuracy_identity(const struct cli_shot_options *options,
+// The view of the shot, and the scene: what it was loaded from and, as KEY=VALUE, how it was
+// edited.
+struct cJSON *accuracy_identity(const char *source, const struct cli_sets *sets,
                                 const struct cli_shot *shot);
 
 // All that results depend on, beside the rung: equal text means that they can be kept. Program and
@@ -119,7 +146,23 @@ const struct cJSON *results_find(const struct cJSON *results, const struct rung 
 // each metric anew: rungs than which none is both faster and less wrong.
 void results_add(struct cJSON *results, struct cJSON *entry);
 
-// Writes results.json, results.csv and the report: index.html, report.js, results.js.
+// Writes results.json: whole, or it stays as it was.
 bool results_write(const struct cJSON *results, const char *folder, struct error *out_error);
+
+// Writes results.csv and the page: index.html, its scripts, results.js.
+bool results_write_report(const struct cJSON *results, const char *folder, struct error *out_error);
+
+struct accuracy_run {
+    struct accuracy *accuracy; // its shot, folder, frames and edits; the rest is filled meanwhile
+    const struct truth_params *truth;
+    const struct ladder *ladder;
+    bool with_report; // beside results.json
+    struct accuracy_watch watch;
+};
+
+// Gets the truth, writes it as reference.png, and measures the rungs that are not in the folder
+// yet; writes the results after each. The results are the caller's; NULL with
+// a message, such as that the watch ended the run.
+struct cJSON *accuracy_run(const struct accuracy_run *run, struct error *out_error);
 
 #endif

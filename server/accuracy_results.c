@@ -338,11 +338,20 @@ static bool copy_report_file(const char *folder, const char *name, struct error 
 bool results_write(const cJSON *results, const char *folder, struct error *out_error)
 {
     char *text = cJSON_Print(results);
+    bool done = write_text(folder, "results.json", "", text, "\n", out_error);
+    cJSON_free(text);
+    return done;
+}
+
+bool results_write_report(const cJSON *results, const char *folder, struct error *out_error)
+{
+    char *text = cJSON_Print(results);
     // The page is opened from the disk, where it may load scripts but no JSON.
-    bool done = write_text(folder, "results.json", "", text, "\n", out_error) &&
-                write_text(folder, "results.js", "globalThis.results = ", text, ";\n", out_error);
+    bool done = write_text(folder, "results.js", "globalThis.results = ", text, ";\n", out_error);
     cJSON_free(text);
     return done && write_csv(results, folder, out_error) &&
            copy_report_file(folder, "index.html", out_error) &&
+           copy_report_file(folder, "error_chart.js", out_error) &&
+           copy_report_file(folder, "chart_view.js", out_error) &&
            copy_report_file(folder, "report.js", out_error);
 }

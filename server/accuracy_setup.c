@@ -59,8 +59,8 @@ static void add_vector(cJSON *object, const char *name, const float vector[3])
     cJSON_AddItemToObject(object, name, cJSON_CreateDoubleArray(values, 3));
 }
 
-// The scene as it was loaded and edited, and the view of it.
-cJSON *accuracy_identity(const struct cli_shot_options *options, const struct cli_shot *shot)
+cJSON *accuracy_identity(const char *source, const struct cli_sets *sets,
+                         const struct cli_shot *shot)
 {
     const struct frame_params *params = &shot->params;
     uint64_t hash = HASH_START;
@@ -68,11 +68,11 @@ cJSON *accuracy_identity(const struct cli_shot_options *options, const struct cl
         hash = hash_path(hash, shot->scene->source_files[i]);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "version", VOXCAST_VERSION);
-    cJSON_AddStringToObject(json, "source", options->source);
+    cJSON_AddStringToObject(json, "source", source);
     add_hash(json, "files", hash);
-    cJSON *sets = cJSON_AddArrayToObject(json, "set");
-    for (uint32_t i = 0; i < options->settings.sets.count; i++)
-        cJSON_AddItemToArray(sets, cJSON_CreateString(options->settings.sets.values[i]));
+    cJSON *list = cJSON_AddArrayToObject(json, "set");
+    for (uint32_t i = 0; i < sets->count; i++)
+        cJSON_AddItemToArray(list, cJSON_CreateString(sets->values[i]));
     cJSON_AddNumberToObject(json, "width", params->width);
     cJSON_AddNumberToObject(json, "height", params->height);
     add_vector(json, "eye", params->camera.eye);

@@ -11,7 +11,7 @@
 #define FIRST_SEED       1u
 #define SAMPLES_AT_ONCE  8u
 #define PATH_SIZE        4096u
-#define SECONDS_PER_NEWS 10.0
+#define SECONDS_PER_NEWS 0.5
 // Light of the sky is gathered by cones, so that it is indirect light here.
 #define LAMP_LAYERS  (REFERENCE_LAYER(REFERENCE_EMISSION) | REFERENCE_LAYER(REFERENCE_DIRECT))
 #define MOST_SAMPLES (1u << 20)
@@ -129,33 +129,79 @@ static void get_progress(const struct halves *halves, uint32_t *out_samples, dou
     *out_noise = 0.5 * hypot(progress[0].noise, progress[1].noise);
 }
 
-// Traces until there are enough samples, or the noise is low enough.
-static void trace(const struct truth_params *params, const struct halves *halves, double *out_noise)
+// What is known while the truth is being traced.
+struct trace_state {
+    const struct truth_params *params;
+    const struct halves *halves;
+    double started_ms;
+    uint32_t samples;
+    double noise;
+};
+
+static bool until_noise(const struct truth_params *params)
 {
-    bool until_noise = params->until_noise > 0.0;
-    uint32_t wanted = until_noise ? MOST_SAMPLES : params->samples, samples = 0;
-    double started_ms = clock_now_ms(), last_news_s = 0.0;
-    *out_noise = INFINITY;
-    while (samples < wanted && !(*out_noise <= params->until_noise)) {
-        uint32_t missing = (wanted - samples + 1) / 2;
-        for (int i = 0; i < 2; i++)
-            reference_render(halves->references[i],
-                             missing < SAMPLES_AT_ONCE ? missing : SAMPLES_AT_ONCE);
-        get_progress(halves, &samples, out_noise);
-        double elapsed_s = 1e-3 * (clock_now_ms() - started_ms);
-        if (elapsed_s - last_news_s < SECONDS_PER_NEWS)
-            continue;
-        last_news_s = elapsed_s;
-        // Noise falls with the square root of the samples.
-        double ratio = *out_noise / params->until_noise;
-        double left_s = until_noise ? elapsed_s * fmax(ratio * ratio - 1.0, 0.0)
-                                    : elapsed_s * (double)(wanted - samples) / samples;
-        fprintf(stderr,
-                "voxcast: reference: %u samples a pixel, noise %.2f %%, about %.0f s left\n",
-                samples, 100.0 * *out_noise, fmax(left_s, 0.0));
+    return params->until_noise > 0.0;
+}
+
+// Noise falls with the square root of the samples.
+static double seconds_left(const struct trace_state *state, uint32_t wanted)
+{
+    double elapsed_s = 1e-3 * (clock_now_ms() - state->started_ms);
+    double ratio = state->noise / state->params->until_noise;
+    if (!until_noise(state->params))
+        return state->samples > 0 ? elapsed_s * (double)(wanted - state->samples) / state->samples
+                                  : NAN;
+    return isfinite(state->noise) ? elapsed_s * fmax(ratio * ratio - 1.0, 0.0) : NAN;
+}
+
+static bool tell(const struct trace_state *state, enum accuracy_stage stage, double left_s)
+{
+    const struct accuracy_watch *watch = &state->params->watch;
+    return !watch->tell || watch->tell(watch->user, &(struct accuracy_progress){
+                                                        .stage = stage,
+                                                        .samples = state->samples,
+                                                        .noise = state->noise,
+                                                        .left_s = left_s,
+                                                    });
+}
+
+// Adds samples to one half. False if the watch ends it.
+static bool add_samples(struct trace_state *state, struct reference *half, uint32_t count,
+                        uint32_t wanted)
+{
+    reference_start(half, reference_get_samples(half) + count);
+    while (!reference_wait(half, SECONDS_PER_NEWS)) {
+        get_progress(state->halves, &state->samples, &state->noise);
+        if (!tell(state, ACCURACY_TRACING, seconds_left(state, wanted))) {
+            reference_stop(half);
+            return false;
+        }
     }
-    fprintf(stderr, "voxcast: reference: %u samples a pixel, noise %.2f %%\n", samples,
-            100.0 * *out_noise);
+    return true;
+}
+
+// Traces until there are enough samples, or the noise is low enough. False if the watch ends it.
+static bool trace(const struct truth_params *params, const struct halves *halves, double *out_noise)
+{
+    uint32_t wanted = until_noise(params) ? MOST_SAMPLES : params->samples;
+    struct trace_state state = {
+        .params = params, .halves = halves, .started_ms = clock_now_ms(), .noise = INFINITY};
+    double told_ms = state.started_ms;
+    while (state.samples < wanted && !(state.noise <= params->until_noise)) {
+        uint32_t missing = (wanted - state.samples + 1) / 2;
+        uint32_t count = missing < SAMPLES_AT_ONCE ? missing : SAMPLES_AT_ONCE;
+        for (int i = 0; i < 2; i++)
+            if (!add_samples(&state, halves->references[i], count, wanted))
+                return false;
+        get_progress(halves, &state.samples, &state.noise);
+        if (clock_now_ms() - told_ms < 1e3 * SECONDS_PER_NEWS)
+            continue;
+        told_ms = clock_now_ms();
+        if (!tell(&state, ACCURACY_TRACING, seconds_left(&state, wanted)))
+            return false;
+    }
+    *out_noise = state.noise;
+    return tell(&state, ACCURACY_TRACED, 0.0);
 }
 
 static bool take_pictures(const struct halves *halves, const struct frame_params *frame,
@@ -181,13 +227,14 @@ static bool trace_truth(const struct truth_params *params, struct truth *truth,
     struct halves halves = {{NULL, NULL}};
     struct reference_params reference = {
         .scene =
-            snapshot_create(params->shot->scene,
-                            frame->settings.shading_model == SHADING_MODEL_BLINN_PHONG, out_error),
+            snapshot_copy(params->shot->scene,
+                          frame->settings.shading_model == SHADING_MODEL_BLINN_PHONG, out_error),
+        .low_priority = params->low_priority,
         .camera = frame->camera,
         .width = frame->width,
         .height = frame->height,
         .max_bounces = REFERENCE_UNLIMITED};
-    bool done = reference.scene != NULL;
+    bool done = reference.scene && snapshot_build(reference.scene, params->low_priority, out_error);
     for (int i = 0; i < 2 && done; i++) {
         reference.seed = FIRST_SEED + (uint64_t)i;
         halves.references[i] = reference_create(&reference, out_error);
@@ -195,10 +242,9 @@ static bool trace_truth(const struct truth_params *params, struct truth *truth,
     }
     if (reference.scene)
         snapshot_release(&reference.scene);
-    if (done) {
-        trace(params, &halves, &truth->noise);
-        done = take_pictures(&halves, frame, truth) || error_set(out_error, "out of memory");
-    }
+    done = done && (trace(params, &halves, &truth->noise) ||
+                    error_set(out_error, "stopped while the reference was traced"));
+    done = done && (take_pictures(&halves, frame, truth) || error_set(out_error, "out of memory"));
     for (int i = 0; i < 2; i++)
         if (halves.references[i])
             reference_destroy(&halves.references[i]);
@@ -213,6 +259,25 @@ static bool load_given(const struct truth_params *params, struct truth *truth,
             load_picture(params, params->direct_path, &truth->pictures[TRUTH_DIRECT], out_error));
 }
 
+// As trace_truth(), but a run that has kept its pictures is not repeated.
+static bool find_or_trace(const struct truth_params *params, struct truth *truth,
+                          struct error *out_error)
+{
+    char *description = describe(params);
+    if (!description)
+        return error_set(out_error, "out of memory");
+    bool done = load_kept(params, description, truth);
+    if (done) {
+        struct trace_state state = {.params = params, .noise = truth->noise};
+        done = tell(&state, ACCURACY_TRACED, 0.0) ||
+               error_set(out_error, "stopped after the reference was loaded");
+    } else {
+        done = trace_truth(params, truth, out_error) && keep(params, description, truth, out_error);
+    }
+    free(description);
+    return done;
+}
+
 bool truth_get(const struct truth_params *params, struct truth *out_truth, struct error *out_error)
 {
     *out_truth = (struct truth){.noise = NAN};
@@ -222,17 +287,8 @@ bool truth_get(const struct truth_params *params, struct truth *out_truth, struc
         truth_finish(out_truth);
         return false;
     }
-    char *description = describe(params);
-    if (!description)
-        return error_set(out_error, "out of memory");
-    bool done = load_kept(params, description, out_truth);
-    if (done)
-        fprintf(stderr, "voxcast: reference: kept from an earlier run, noise %.2f %%\n",
-                100.0 * out_truth->noise);
-    else
-        done = trace_truth(params, out_truth, out_error) &&
-               keep(params, description, out_truth, out_error);
-    free(description);
+    bool done = params->folder ? find_or_trace(params, out_truth, out_error)
+                               : trace_truth(params, out_truth, out_error);
     if (!done)
         truth_finish(out_truth);
     return done;

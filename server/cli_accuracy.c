@@ -11,10 +11,10 @@
 #include "server/cli.h"
 #include "server/cli_bench.h"
 
-#define DEFAULT_FRAMES  12
-#define DEFAULT_NOISE   0.01
-#define BAR_LENGTH      20u
-#define SELF_LIT_MARGIN 2 // pixels, as far as resampling at draft quality reaches
+#define DEFAULT_FRAMES   12
+#define DEFAULT_NOISE    0.01
+#define BAR_LENGTH       20u
+#define SECONDS_PER_NEWS 10.0
 
 static const char usage[] =
     "usage: voxcast accuracy SCENE|builtin:NAME --out DIR [OPTIONS]\n"
@@ -55,15 +55,49 @@ struct accuracy_options {
     double until_noise;
 };
 
-static void print_progress(uint32_t done, uint32_t count, const char *name, double took_s,
-                           double left_s)
+// When the truth was last told of.
+struct teller {
+    double told_ms;
+};
+
+static void print_truth(struct teller *teller, const struct accuracy_progress *progress)
+{
+    double percent = 100.0 * progress->noise, now_ms = clock_now_ms();
+    if (progress->stage == ACCURACY_TRACED && progress->samples > 0)
+        fprintf(stderr, "voxcast: reference: %u samples a pixel, noise %.2f %%\n",
+                progress->samples, percent);
+    else if (progress->stage == ACCURACY_TRACED)
+        fprintf(stderr, "voxcast: reference: kept from an earlier run, noise %.2f %%\n", percent);
+    else if (now_ms - teller->told_ms >= 1e3 * SECONDS_PER_NEWS) {
+        teller->told_ms = now_ms;
+        fprintf(stderr,
+                "voxcast: reference: %u samples a pixel, noise %.2f %%, about %.0f s left\n",
+                progress->samples, percent, fmax(progress->left_s, 0.0));
+    }
+}
+
+static void print_rungs(const struct accuracy_progress *progress)
 {
     char bar[BAR_LENGTH + 1];
+    double left_s = progress->left_s;
     for (uint32_t i = 0; i < BAR_LENGTH; i++)
-        bar[i] = i * count < done * BAR_LENGTH ? '#' : '.';
+        bar[i] = i * progress->rung_count < progress->done * BAR_LENGTH ? '#' : '.';
     bar[BAR_LENGTH] = '\0';
-    fprintf(stderr, "voxcast: [%s] %u of %u, %s took %.1f s, about %.0f min %02.0f s left\n", bar,
-            done, count, name, took_s, floor(left_s / 60.0), floor(fmod(left_s, 60.0)));
+    if (progress->measured)
+        fprintf(stderr, "voxcast: [%s] %u of %u, %s took %.1f s, about %.0f min %02.0f s left\n",
+                bar, progress->done, progress->rung_count, progress->measured->name,
+                progress->measured_s, floor(left_s / 60.0), floor(fmod(left_s, 60.0)));
+    else if (progress->done > 0)
+        fprintf(stderr, "voxcast: %u rungs of the same set-up are there already\n", progress->done);
+}
+
+static bool tell(void *user, const struct accuracy_progress *progress)
+{
+    if (progress->stage == ACCURACY_MEASURING)
+        print_rungs(progress);
+    else
+        print_truth(user, progress);
+    return true;
 }
 
 // Names the metrics by which the truth is not good enough.
@@ -89,116 +123,35 @@ static void warn_of_noise(const cJSON *results)
         fputs("; it needs more samples\n", stderr);
 }
 
-// Measures the rungs that are not there yet; writes everything after each.
-static bool climb(const struct accuracy *accuracy, const struct ladder *ladder, cJSON *results,
-                  struct error *out_error)
-{
-    uint32_t left = 0, measured = 0;
-    for (uint32_t i = 0; i < ladder->rung_count; i++)
-        left += results_find(results, &ladder->rungs[i]) == NULL;
-    double started_ms = clock_now_ms();
-    for (uint32_t i = 0; i < ladder->rung_count; i++) {
-        const struct rung *rung = &ladder->rungs[i];
-        double rung_started_ms = clock_now_ms();
-        if (results_find(results, rung))
-            continue;
-        cJSON *entry = accuracy_measure(accuracy, rung, out_error);
-        if (!entry)
-            return false;
-        results_add(results, entry);
-        if (!results_write(results, accuracy->folder, out_error))
-            return false;
-        left--;
-        measured++;
-        double now_ms = clock_now_ms();
-        print_progress(ladder->rung_count - left, ladder->rung_count, rung->name,
-                       1e-3 * (now_ms - rung_started_ms),
-                       1e-3 * (now_ms - started_ms) / measured * left);
-    }
-    warn_of_noise(results);
-    return results_write(results, accuracy->folder, out_error);
-}
-
-static bool write_reference_png(const struct accuracy *accuracy, struct error *out_error)
-{
-    const struct picture *truth = &accuracy->truth.pictures[TRUTH_ALL];
-    char path[4096];
-    uint8_t *rgb = malloc(3 * picture_pixel_count(truth));
-    if (!rgb)
-        return error_set(out_error, "out of memory");
-    display_bytes(&accuracy->display, truth, rgb);
-    snprintf(path, sizeof(path), "%s/reference.png", accuracy->folder);
-    bool done = cli_write_png(path, truth->width, truth->height, rgb, out_error);
-    free(rgb);
-    return done;
-}
-
-// Marks the pixels whose rays meet nothing or what shines, and those near by.
-static bool find_self_lit(struct accuracy *accuracy, struct error *out_error)
-{
-    const struct frame_params *params = &accuracy->shot.params;
-    const struct scene *scene = accuracy->shot.scene;
-    int width = (int)params->width, height = (int)params->height;
-    accuracy->self_lit = calloc((size_t)width * (size_t)height, sizeof(bool));
-    if (!accuracy->self_lit)
-        return error_set(out_error, "out of memory");
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            struct ray_hit hit;
-            if (renderer_pick(accuracy->shot.renderer, &params->camera, params->width,
-                              params->height, (float)x, (float)y, &hit)) {
-                const struct scene_material *material = &scene->materials[hit.material];
-                if (material->emissive_strength *
-                        (material->emissive[0] + material->emissive[1] + material->emissive[2]) ==
-                    0.0f)
-                    continue;
-            }
-            for (int j = y - SELF_LIT_MARGIN; j <= y + SELF_LIT_MARGIN; j++)
-                for (int i = x - SELF_LIT_MARGIN; i <= x + SELF_LIT_MARGIN; i++)
-                    if (i >= 0 && i < width && j >= 0 && j < height)
-                        accuracy->self_lit[j * width + i] = true;
-        }
-    return true;
-}
-
-static void choose_display(struct accuracy *accuracy)
-{
-    const struct render_settings *settings = &accuracy->shot.params.settings;
-    float exposure = exp2f(settings->exposure_ev);
-    if (settings->exposure_mode == EXPOSURE_AUTOMATIC)
-        exposure *= display_automatic_exposure(&accuracy->truth.pictures[TRUTH_ALL]);
-    accuracy->display = (struct display_params){
-        .exposure = exposure, .tonemap = settings->tonemap, .gamma = settings->gamma};
-}
-
 static bool run(const struct accuracy_options *options, struct accuracy *accuracy,
                 const struct ladder *ladder, struct error *out_error)
 {
-    uint32_t kept;
-    cJSON *identity = accuracy_identity(&options->shot, &accuracy->shot);
-    bool done = truth_get(&(struct truth_params){.shot = &accuracy->shot,
-                                                 .path = options->reference,
-                                                 .direct_path = options->reference_direct,
-                                                 .samples = options->spp,
-                                                 .until_noise = options->until_noise,
-                                                 .folder = accuracy->folder,
-                                                 .identity = identity},
-                          &accuracy->truth, out_error);
-    if (done) {
-        choose_display(accuracy);
-        done = find_self_lit(accuracy, out_error) && write_reference_png(accuracy, out_error);
-        cJSON *setup =
-            done ? accuracy_setup(accuracy, options->reference, identity, out_error) : NULL;
-        cJSON *results = setup ? results_open(accuracy->folder, setup, &kept) : NULL;
-        if (results && kept > 0)
-            fprintf(stderr, "voxcast: %u rungs of the same set-up are there already\n", kept);
-        done = results && climb(accuracy, ladder, results, out_error);
-        cJSON_Delete(results);
-        truth_finish(&accuracy->truth);
-        free(accuracy->self_lit);
-    }
+    struct teller teller = {.told_ms = clock_now_ms()};
+    struct accuracy_watch watch = {.tell = tell, .user = &teller};
+    cJSON *identity =
+        accuracy_identity(options->shot.source, &options->shot.settings.sets, &accuracy->shot);
+    cJSON *results =
+        accuracy_run(&(struct accuracy_run){.accuracy = accuracy,
+                                            .truth =
+                                                &(struct truth_params){
+                                                    .shot = &accuracy->shot,
+                                                    .path = options->reference,
+                                                    .direct_path = options->reference_direct,
+                                                    .samples = options->spp,
+                                                    .until_noise = options->until_noise,
+                                                    .folder = accuracy->folder,
+                                                    .identity = identity,
+                                                    .watch = watch,
+                                                },
+                                            .ladder = ladder,
+                                            .with_report = true,
+                                            .watch = watch},
+                     out_error);
+    if (results)
+        warn_of_noise(results);
+    cJSON_Delete(results);
     cJSON_Delete(identity);
-    return done;
+    return results != NULL;
 }
 
 // False when the command is to end with *out_status.

@@ -186,7 +186,6 @@ static bool measure_edit(struct edit_bench *bench, const struct edit_state *to,
     apply_state(bench, to);
     while (now.frames < CLI_MAX_STILL_FRAMES) {
         struct frame_pixels pixels;
-        double started_ms = clock_now_ms();
         enum render_result result =
             renderer_view_draw(renderer, bench->view, &bench->frame_params, out_error);
         if (result == RENDER_UNCHANGED)
@@ -195,7 +194,7 @@ static bool measure_edit(struct edit_bench *bench, const struct edit_state *to,
             return false;
         if (!renderer_view_collect(renderer, bench->view, true, &pixels))
             return error_set(out_error, "the GPU did not finish the frame");
-        now.ms += clock_now_ms() - started_ms;
+        now.ms += pixels.frame_time_ms;
         now.frames++;
         take_pixels(bench, &pixels, bench->frame);
         renderer_view_release(renderer, bench->view);

@@ -157,6 +157,7 @@ static const struct binding bindings[] = {
     VIEW(debug_level),
     VIEW(debug_face),
     VIEW(paused),
+    VIEW(rung),
     CAMERA(eye),
     CAMERA(target),
     CAMERA(up),

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "renderer/renderer.h"
+#include "server/accuracy_service.h"
 #include "server/frame_stream.h"
 #include "server/mailbox.h"
 #include "server/outbox.h"
@@ -27,6 +28,7 @@ struct network_params {
     uint32_t message_rate;
     struct mailbox *mailbox;
     struct frame_stream *stream;
+    struct accuracy_service *accuracy; // whose files are served
 };
 
 // Binds the port. NULL with a message that names the address.

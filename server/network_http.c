@@ -7,17 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char security_headers[] =
-    "cache-control: no-cache\r\n"
-    "x-content-type-options: nosniff\r\n"
-    "referrer-policy: no-referrer\r\n"
-    "x-frame-options: DENY\r\n"
-    "cross-origin-opener-policy: same-origin\r\n"
-    "connection: close\r\n"
-    "content-security-policy: default-src 'self'; img-src 'self' blob: data:; font-src 'self' "
-    "data:; "
-    "worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' ws: wss:; "
-    "object-src 'none'; base-uri 'none'; frame-ancestors 'none'\r\n";
+#define SECURITY_HEADERS                                                                           \
+    "x-content-type-options: nosniff\r\n"                                                          \
+    "referrer-policy: no-referrer\r\n"                                                             \
+    "x-frame-options: DENY\r\n"                                                                    \
+    "cross-origin-opener-policy: same-origin\r\n"                                                  \
+    "connection: close\r\n"                                                                        \
+    "content-security-policy: default-src 'self'; img-src 'self' blob: data:; font-src 'self' "    \
+    "data:; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' ws: "    \
+    "wss:; object-src 'none'; base-uri 'none'; frame-ancestors 'none'\r\n"
+
+static const char security_headers[] = "cache-control: no-cache\r\n" SECURITY_HEADERS;
+// Of files that are written again and again, and that not everybody may see.
+static const char measured_headers[] = "cache-control: no-store\r\n" SECURITY_HEADERS;
 
 static const char *mime_type(const char *path)
 {
@@ -137,10 +139,15 @@ static int serve(struct network *network, struct lws *wsi, const char *url)
         return answer_ready(network, wsi);
     if (strcmp(url, "/metrics") == 0)
         return answer_metrics(network, wsi);
-    if (url[0] != '/' || !find_file(network, url, path))
+    const char *headers = security_headers;
+    int headers_length = (int)sizeof(security_headers) - 1;
+    if (accuracy_service_find_file(network->params.accuracy, url, path, sizeof(path))) {
+        headers = measured_headers;
+        headers_length = (int)sizeof(measured_headers) - 1;
+    } else if (url[0] != '/' || !find_file(network, url, path)) {
         return answer(wsi, HTTP_STATUS_NOT_FOUND, "text/plain", "not found\n");
-    int result = lws_serve_http_file(wsi, path, mime_type(path), security_headers,
-                                     (int)sizeof(security_headers) - 1);
+    }
+    int result = lws_serve_http_file(wsi, path, mime_type(path), headers, headers_length);
     // Positive: sent whole already. Zero: LWS_CALLBACK_HTTP_FILE_COMPLETION will come.
     return result == 0 ? 0 : -1;
 }

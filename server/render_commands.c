@@ -144,11 +144,14 @@ static void run_view_or_camera(struct render_thread *thread, struct render_clien
     struct document document = render_document(thread, client);
     enum parameter_group group = method_get_group(command->method);
     const struct view_options before = client->options;
+    struct rung_override rung = client->rung;
     struct rpc_error error;
-    if (!document_set(&document, group, 0, command->values, command->value_count, &error)) {
+    if (!render_find_rung(thread, command, &rung, &error) ||
+        !document_set(&document, group, 0, command->values, command->value_count, &error)) {
         render_reply_error(thread, command, &error);
         return;
     }
+    client->rung = rung;
     if (shows_other_things(&before, &client->options))
         render_mark_moving(thread, client);
     else
@@ -286,6 +289,12 @@ void render_run_command(struct render_thread *thread, struct command *command)
         break;
     case METHOD_PICK:
         run_pick(thread, client, command);
+        break;
+    case METHOD_ACCURACY_START:
+        render_run_accuracy_start(thread, client, command);
+        break;
+    case METHOD_ACCURACY_CANCEL:
+        render_run_accuracy_cancel(thread, command);
         break;
     default:
         run_edit(thread, client, command);

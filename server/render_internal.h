@@ -14,12 +14,20 @@
 #include "server/render_thread.h"
 #include "server/scene_loader.h"
 
+// What a rung puts in place of the shared settings, while view_options.rung names it.
+struct rung_override {
+    enum quality quality;
+    double scale; // of the picture's size
+    struct render_settings settings;
+};
+
 // One client that has said hello; its place in the array is its slot of the frame stream.
 struct render_client {
     uint32_t client_id; // 0: none
     char name[PROTOCOL_MAX_NAME_BYTES + 1];
     struct view *view;
     struct view_options options;
+    struct rung_override rung; // if options.rung is not ""
     uint64_t camera_revision;
     uint64_t edit_id;
     uint64_t frame_count;
@@ -116,6 +124,27 @@ uint64_t render_next_draw_us(struct render_thread *thread);
 // Hands finished frames to the JPEG workers. With `wait`, waits for one if any is under way. True
 // if there was one.
 bool render_collect(struct render_thread *thread, bool wait);
+
+// The shared settings as views are drawn with them: what "auto" voxels are must not change with the
+// quality, or they would be made anew whenever the camera starts and stops.
+struct render_settings render_resolve_settings(const struct render_thread *thread);
+
+// From when on no client will wait for a frame, or soon do so because things move, if nothing comes
+// in: now or earlier, later, or QUALITY_NEVER while one waits.
+uint64_t render_idle_from_us(struct render_thread *thread);
+
+// render_accuracy.c
+void render_run_accuracy_start(struct render_thread *thread, struct render_client *client,
+                               const struct command *command);
+void render_run_accuracy_cancel(struct render_thread *thread, const struct command *command);
+
+// Gets what the rung that a view.configure names puts in place, if it names one. False with an
+// error that lists the rungs there are.
+bool render_find_rung(struct render_thread *thread, const struct command *command,
+                      struct rung_override *out_rung, struct rpc_error *out_error);
+
+// Back to the shared settings.
+void render_clear_rung(struct render_thread *thread, struct render_client *client);
 
 // render_statistics.c
 void render_send_statistics(struct render_thread *thread, uint32_t slot);

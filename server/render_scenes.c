@@ -145,8 +145,10 @@ static bool swap_scene(struct render_thread *thread, struct scene *scene, struct
     thread->revision++;
     snprintf(thread->scene_label, sizeof(thread->scene_label), "%s", thread->load_label);
     edit_log_clear(&thread->log);
-    for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++)
+    for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
         edit_history_clear(&thread->clients[i].history);
+        render_clear_rung(thread, &thread->clients[i]);
+    }
     if (thread->watch)
         file_watch_set_files(thread->watch, scene->source_files, scene->source_file_count);
     pthread_mutex_lock(&thread->status_mutex);

@@ -91,7 +91,7 @@ void render_send_statistics(struct render_thread *thread, uint32_t slot)
     cJSON_AddNumberToObject(params, "render_width", statistics->render_width);
     cJSON_AddNumberToObject(params, "render_height", statistics->render_height);
     cJSON_AddStringToObject(params, "quality", quality_names[client->drawn_row]);
-    cJSON_AddStringToObject(params, "wanted_quality", quality_names[client->options.quality]);
+    cJSON_AddStringToObject(params, "wanted_quality", quality_names[client->drawn_wanted]);
     cJSON_AddNumberToObject(params, "convergence", (double)client->convergence);
     cJSON_AddNumberToObject(params, "frames_per_second", client->frames_per_second);
     cJSON_AddNumberToObject(params, "frame_time_ms", statistics->frame_time_ms);

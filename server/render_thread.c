@@ -142,12 +142,18 @@ static void turn(struct render_thread *thread)
     render_poll_scenes(thread);
     poll_shaders(thread);
     uint64_t deadline_us = animate(thread);
+    uint64_t idle_us = render_idle_from_us(thread);
+    bool idle = idle_us <= clock_now_us();
+    accuracy_service_set_idle(thread->params.accuracy, idle);
     bool drew = render_draw_next(thread);
     bool collected = render_collect(thread, !drew);
     if (drew || collected)
         return;
     uint64_t draw_us = render_next_draw_us(thread);
-    mailbox_wait(thread->params.mailbox, draw_us < deadline_us ? draw_us : deadline_us);
+    deadline_us = draw_us < deadline_us ? draw_us : deadline_us;
+    if (!idle && idle_us < deadline_us)
+        deadline_us = idle_us;
+    mailbox_wait(thread->params.mailbox, deadline_us);
 }
 
 static void watch_shaders(struct render_thread *thread)

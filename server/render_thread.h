@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "server/accuracy_service.h"
 #include "server/frame_stream.h"
 #include "server/jpeg_workers.h"
 #include "server/mailbox.h"
@@ -22,6 +23,7 @@ struct render_thread_params {
     struct outbox *outbox;
     struct frame_stream *stream;
     struct jpeg_workers *workers;
+    struct accuracy_service *accuracy;
     // Called from the thread when it cannot go on: no renderer, or the first scene fails.
     void (*failed)(void *user);
     void *user;

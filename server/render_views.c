@@ -1,6 +1,7 @@
 // The clients' views: whose turn it is, drawing, and handing pixels on.
 #include "server/render_internal.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,6 +54,7 @@ void render_remove_gone_clients(struct render_thread *thread, bool all)
             continue;
         if (client->drawing)
             frame_stream_finish(thread->params.stream, slot, NULL);
+        accuracy_service_forget(thread->params.accuracy, client->client_id);
         renderer_view_destroy(thread->renderer, &client->view);
         edit_history_clear(&client->history);
         memset(client, 0, sizeof(*client));
@@ -87,6 +89,8 @@ void render_mark_moving(struct render_thread *thread, struct render_client *clie
 
 static struct quality_request request_of(const struct render_client *client)
 {
+    if (client->options.rung[0])
+        return (struct quality_request){.wanted = client->rung.quality};
     return (struct quality_request){.wanted = client->options.quality,
                                     .adaptive = client->options.adaptive,
                                     .target_frame_ms = client->options.target_frame_ms};
@@ -145,6 +149,22 @@ uint64_t render_next_draw_us(struct render_thread *thread)
     return next;
 }
 
+uint64_t render_idle_from_us(struct render_thread *thread)
+{
+    uint64_t now = clock_now_us(), from = now;
+    for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
+        const struct render_client *client = &thread->clients[slot];
+        if (!client->client_id || client->options.paused)
+            continue;
+        if (client->drawing || wants_draw(thread, slot, now))
+            return QUALITY_NEVER;
+        uint64_t still = client->quality.moved_at_us + QUALITY_STILL_US;
+        if (quality_controller_is_moving(&client->quality, now) && still > from)
+            from = still;
+    }
+    return from;
+}
+
 static void fill_header(struct render_thread *thread, struct render_client *client,
                         uint64_t start_us)
 {
@@ -172,9 +192,7 @@ static void fail_draw(struct render_thread *thread, struct render_client *client
     render_notice(thread, client->client_id, "error", error->message);
 }
 
-// What "auto" means must not change with the quality, or the voxels would be made anew whenever the
-// camera starts and stops.
-static struct render_settings resolve_settings(const struct render_thread *thread)
+struct render_settings render_resolve_settings(const struct render_thread *thread)
 {
     struct render_settings settings = thread->settings;
     if (settings.voxel_resolution == VOXEL_RESOLUTION_AUTO)
@@ -184,11 +202,28 @@ static struct render_settings resolve_settings(const struct render_thread *threa
     return settings;
 }
 
+// How the picture is shown stays as all others are.
+static void apply_rung(const struct rung_override *rung, struct frame_params *params)
+{
+    struct render_settings settings = rung->settings;
+    settings.tonemap = params->settings.tonemap;
+    settings.exposure_mode = params->settings.exposure_mode;
+    settings.exposure_ev = params->settings.exposure_ev;
+    settings.gamma = params->settings.gamma;
+    params->settings = settings;
+    params->own_voxels = true;
+    double scale = rung->scale;
+    scale = fmin(scale, (double)VIEW_MAX_WIDTH / params->width);
+    scale = fmin(scale, (double)VIEW_MAX_HEIGHT / params->height);
+    params->width = (uint32_t)fmax(round(params->width * scale), VIEW_MIN_EDGE);
+    params->height = (uint32_t)fmax(round(params->height * scale), VIEW_MIN_EDGE);
+}
+
 static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
 {
     struct render_client *client = &thread->clients[slot];
     client->drawn_row = choose_row(client, now);
-    client->drawn_wanted = client->options.quality;
+    client->drawn_wanted = request_of(client).wanted;
     client->drawn_moving = quality_controller_is_moving(&client->quality, now);
     client->drawn_to_refine = !is_urgent(client, now);
     if (client->drawn_to_refine)
@@ -202,9 +237,11 @@ static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
         .debug_level = client->options.debug_level,
         .debug_face = client->options.debug_face,
         .output = FRAME_OUTPUT_YCBCR,
-        .settings = resolve_settings(thread),
+        .settings = render_resolve_settings(thread),
         .user_id = client->frame_count + 1,
     };
+    if (client->options.rung[0])
+        apply_rung(&client->rung, &params);
     struct error error = {""};
     uint64_t start = clock_now_us();
     enum render_result result = renderer_view_draw(thread->renderer, client->view, &params, &error);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "protocol/limits.h"
+#include "server/accuracy_service.h"
 #include "server/network.h"
 #include "server/options.h"
 #include "server/render_thread.h"
@@ -21,6 +22,7 @@ struct daemon {
     struct outbox *outbox;
     struct frame_stream *stream;
     struct jpeg_workers *workers;
+    struct accuracy_service *accuracy;
     struct render_thread *render;
     struct network *network;
 };
@@ -91,7 +93,9 @@ static bool create_parts(struct daemon *daemon, struct error *error)
         .user = daemon,
     });
     daemon->outbox = outbox_create(&(struct outbox_params){.wake = wake_network, .user = daemon});
-    if (!daemon->mailbox || !daemon->stream || !daemon->outbox)
+    daemon->accuracy = accuracy_service_create(
+        &(struct accuracy_service_params){.gpu = options->gpu, .outbox = daemon->outbox});
+    if (!daemon->mailbox || !daemon->stream || !daemon->outbox || !daemon->accuracy)
         return error_set(error, "out of memory");
     daemon->network = network_create(
         &(struct network_params){
@@ -105,6 +109,7 @@ static bool create_parts(struct daemon *daemon, struct error *error)
             .message_rate = options->message_rate,
             .mailbox = daemon->mailbox,
             .stream = daemon->stream,
+            .accuracy = daemon->accuracy,
         },
         error);
     if (!daemon->network)
@@ -131,6 +136,7 @@ static bool start_threads(struct daemon *daemon, struct error *error)
         .outbox = daemon->outbox,
         .stream = daemon->stream,
         .workers = daemon->workers,
+        .accuracy = daemon->accuracy,
         .failed = render_failed,
     });
     if (!daemon->render || !network_start(daemon->network, daemon->outbox, daemon->render))
@@ -160,6 +166,7 @@ static bool stop(struct daemon *daemon)
     render_thread_destroy(&daemon->render);
     jpeg_workers_destroy(&daemon->workers);
     network_destroy(&daemon->network);
+    accuracy_service_destroy(&daemon->accuracy);
     outbox_destroy(&daemon->outbox);
     frame_stream_destroy(&daemon->stream);
     mailbox_destroy(&daemon->mailbox);

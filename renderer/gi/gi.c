@@ -116,30 +116,81 @@ static bool same_params(const struct voxel_volume_params *a, const struct voxel_
            a->directions == b->directions && a->cache_cones == b->cache_cones;
 }
 
+// The first volume of the frame's kind (shared, or of one view only) that the view may draw with,
+// or else `out_shared`, another view's clipmap.
+static struct gi_volume *find_fitting(struct gi *gi, const struct frame *frame,
+                                      const struct voxel_volume_params *params,
+                                      struct gi_volume **out_shared)
+{
+    bool own = frame->params->own_voxels;
+    for (uint32_t i = 0; i < gi->volume_count; i++) {
+        struct gi_volume *it = &gi->volumes[i];
+        if (it->own != own || !same_params(&it->volume->params, params))
+            continue;
+        if (!it->owner || it->owner == frame->view)
+            return it;
+        if (!own)
+            *out_shared = it;
+    }
+    return NULL;
+}
+
+// A volume of the frame's kind that is of no more use, since others are wanted in its place: the
+// view's own, or of settings that nobody has any more. NULL for none.
+static struct gi_volume *find_replaceable(struct gi *gi, const struct frame *frame,
+                                          const struct voxel_volume_params *params)
+{
+    bool own = frame->params->own_voxels;
+    struct gi_volume *stale = NULL;
+    for (uint32_t i = 0; i < gi->volume_count; i++) {
+        struct gi_volume *it = &gi->volumes[i];
+        if (it->own != own || same_params(&it->volume->params, params))
+            continue;
+        if (it->owner == frame->view)
+            return it;
+        if (!own)
+            stale = it; // shared settings have changed, and its views have not been drawn since
+    }
+    return stale;
+}
+
+static uint32_t count_volumes(const struct gi *gi, bool own)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < gi->volume_count; i++)
+        count += gi->volumes[i].own == own;
+    return count;
+}
+
 // The volume to draw with: a view's own clipmap, or the grid; a shared clipmap where there are too
-// many.
+// many. NULL if memory ends, or too many views have voxels of their own.
 static struct gi_volume *find_volume(struct gi *gi, const struct frame *frame,
                                      const struct voxel_volume_params *params)
 {
-    bool own = params->method == GI_METHOD_CLIPMAP;
-    struct gi_volume *shared = NULL;
-    for (uint32_t i = 0; i < gi->volume_count; i++) {
-        struct gi_volume *it = &gi->volumes[i];
-        if (!same_params(&it->volume->params, params))
-            continue;
-        if (!own || it->owner == frame->view)
-            return it;
-        shared = it;
+    bool own = frame->params->own_voxels;
+    struct gi_volume *shared = NULL, *fitting = find_fitting(gi, frame, params, &shared);
+    if (fitting)
+        return fitting;
+    struct gi_volume *place = NULL;
+    if (count_volumes(gi, own) == (own ? GI_MAX_OWN_VOLUMES : GI_MAX_SHARED_VOLUMES)) {
+        place = find_replaceable(gi, frame, params);
+        if (shared && (!place || place->owner != frame->view))
+            return shared;
+        if (!place)
+            return NULL;
+        voxel_volume_destroy(&place->volume);
+        *place = gi->volumes[--gi->volume_count];
     }
-    if (gi->volume_count == GI_MAX_VOLUMES)
-        return shared;
     struct voxel_volume *volume = voxel_volume_create(gi->gpu, params);
     if (!volume)
         return NULL;
-    struct gi_volume *added = &gi->volumes[gi->volume_count++];
-    *added = (struct gi_volume){
-        .volume = volume, .owner = own ? frame->view : NULL, .serial = gi->next_serial++};
-    return added;
+    bool owned = own || params->method == GI_METHOD_CLIPMAP;
+    place = &gi->volumes[gi->volume_count++];
+    *place = (struct gi_volume){.volume = volume,
+                                .owner = owned ? frame->view : NULL,
+                                .own = own,
+                                .serial = gi->next_serial++};
+    return place;
 }
 
 static float brightest_channel(const float color[3])
@@ -293,6 +344,12 @@ static bool frame_shows_cache(const struct frame *frame)
            view == DEBUG_VIEW_AMBIENT_OCCLUSION || view == DEBUG_VIEW_CACHE_AGE;
 }
 
+// Whether there is no volume because others' views have all that views may have for themselves.
+static bool too_many_own(const struct gi *gi, const struct frame *frame)
+{
+    return frame->params->own_voxels && count_volumes(gi, true) == GI_MAX_OWN_VOLUMES;
+}
+
 bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 {
     frame->volume = NULL;
@@ -306,6 +363,10 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
     struct voxel_volume *volume = found ? found->volume : NULL;
     if (volume && settings->voxelize_every_frame && params.method == GI_METHOD_GRID)
         volume->everything = true;
+    if (!volume && too_many_own(gi, frame))
+        return error_set(out_error,
+                         "%u views have settings of their own; no more of them can have voxels",
+                         GI_MAX_OWN_VOLUMES);
     if (!volume || !voxel_volume_update(volume, frame->resident, frame->params->camera.eye))
         return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
     frame->volume = volume;

@@ -5,15 +5,19 @@
 #include "renderer/effects.h"
 #include "renderer/gi/light.h"
 
-// Clipmaps follow cameras; views beyond so many volumes share the one that is nearest.
-#define GI_MAX_VOLUMES 6u
+// Clipmaps follow cameras; views beyond so many volumes share one.
+#define GI_MAX_SHARED_VOLUMES 6u
+// Of views whose settings are not those of others (frame_params.own_voxels).
+#define GI_MAX_OWN_VOLUMES 6u
+#define GI_MAX_VOLUMES     (GI_MAX_SHARED_VOLUMES + GI_MAX_OWN_VOLUMES)
 
 struct gi {
     struct gpu *gpu;
     uint32_t volume_count;
     struct gi_volume {
         struct voxel_volume *volume;
-        const struct view *owner; // whose camera a clipmap follows; NULL for a grid
+        const struct view *owner; // whose camera a clipmap follows; NULL for a shared grid
+        bool own;                 // used by nobody but its owner
         uint64_t serial;
     } volumes[GI_MAX_VOLUMES];
     uint64_t next_serial;

@@ -1,4 +1,8 @@
 // Opens a headless EGL context: a device-platform display (NVIDIA, Mesa) or a surfaceless one.
+//
+// A device has one display in the whole program, which eglTerminate() ends for all: so displays are
+// counted, and the last renderer that uses one ends it.
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,10 +14,49 @@
 static const char *const install_hint =
     "install libegl1 and a GL driver (Debian: apt install libegl1 libgl1-mesa-dri)";
 
+static pthread_mutex_t display_mutex = PTHREAD_MUTEX_INITIALIZER;
+static struct {
+    EGLDisplay display;
+    uint32_t users;
+} displays[MAX_EGL_DEVICES + 1];
+
+// Initialises a display for one more user. False if that fails.
+static bool display_retain(EGLDisplay display)
+{
+    bool done = false;
+    pthread_mutex_lock(&display_mutex);
+    size_t place = 0, count = sizeof(displays) / sizeof(displays[0]);
+    for (size_t i = count; i-- > 0;)
+        if (displays[i].users == 0)
+            place = i;
+    for (size_t i = 0; i < count; i++)
+        if (displays[i].users > 0 && displays[i].display == display)
+            place = i;
+    EGLint major, minor;
+    if (displays[place].users > 0)
+        done = displays[place].display == display;
+    else
+        done = eglInitialize(display, &major, &minor);
+    if (done) {
+        displays[place].display = display;
+        displays[place].users++;
+    }
+    pthread_mutex_unlock(&display_mutex);
+    return done;
+}
+
+static void display_release(EGLDisplay display)
+{
+    pthread_mutex_lock(&display_mutex);
+    for (size_t i = 0; i < sizeof(displays) / sizeof(displays[0]); i++)
+        if (displays[i].users > 0 && displays[i].display == display && --displays[i].users == 0)
+            eglTerminate(display);
+    pthread_mutex_unlock(&display_mutex);
+}
+
 static bool display_open_context(struct gpu *gpu, EGLDisplay display)
 {
-    EGLint major, minor;
-    if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor))
+    if (display == EGL_NO_DISPLAY || !display_retain(display))
         return false;
     static const EGLint config_attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
                                                EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
@@ -47,7 +90,7 @@ static bool display_open_context(struct gpu *gpu, EGLDisplay display)
     gpu->display = display;
     return true;
 fail:
-    eglTerminate(display);
+    display_release(display);
     return false;
 }
 
@@ -141,5 +184,5 @@ void gpu_egl_close(struct gpu *gpu)
     eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (gpu->context != EGL_NO_CONTEXT)
         eglDestroyContext(gpu->display, gpu->context);
-    eglTerminate(gpu->display);
+    display_release(gpu->display);
 }

@@ -29,7 +29,7 @@ static void place_cascade(struct frame *frame, uint32_t i)
     for (int axis = 0; axis < 3; axis++)
         moved =
             fmaxf(moved, fabsf(frame->params->camera.eye[axis] - view->cascade_center[i][axis]));
-    if (!view->cascade_stale[i] && moved <= 2.0f * step)
+    if (view->cascade_placed[i] && moved <= 2.0f * step)
         return;
     memcpy(view->cascade_center[i], center, sizeof(center));
     vec3 low, high;
@@ -38,6 +38,7 @@ static void place_cascade(struct frame *frame, uint32_t i)
     for (int axis = 0; axis < 3; axis++)
         high[axis] = center[axis] + half;
     resident_directional_view(resident, resident->directional_axis, low, high, &view->cascades[i]);
+    view->cascade_placed[i] = true;
     view->cascade_stale[i] = true;
 }
 
@@ -61,8 +62,11 @@ void shadow_map_place_cascades(struct frame *frame)
     if (lost)
         memset(resident->shadow_stale, true, sizeof(resident->shadow_stale));
     resident->shadow_epoch_seen = epoch;
-    if (view->shadow_revision_seen != resident->shadow_revision || view->shadow_epoch_seen != epoch)
+    // Depth that is lost, such as because another view takes cascades, is drawn again where it was.
+    if (view->shadow_epoch_seen != epoch)
         memset(view->cascade_stale, true, sizeof(view->cascade_stale));
+    if (view->shadow_revision_seen != resident->shadow_revision)
+        memset(view->cascade_placed, false, sizeof(view->cascade_placed));
     view->shadow_revision_seen = resident->shadow_revision;
     view->shadow_epoch_seen = epoch;
     for (uint32_t i = 0; i < view->cascade_count; i++)

@@ -11,46 +11,6 @@
 #define MIN_REFRACTING_IOR 1.001f
 #define MIN_DIAGONAL_M     1e-6
 
-static void *copy_array(const void *source, size_t count, size_t size)
-{
-    void *copy = malloc((count + 1) * size);
-    if (copy && count > 0)
-        memcpy(copy, source, count * size);
-    return copy;
-}
-
-#define COPY(target, source, items, singular)                                                      \
-    ((target)->items =                                                                             \
-         copy_array((source)->items, (source)->singular##_count, sizeof(*(source)->items)),        \
-     (target)->singular##_count = (target)->items ? (source)->singular##_count : 0,                \
-     (target)->items != NULL)
-
-// What light depends on. NULL when out of memory.
-static struct scene *copy_scene(const struct scene *source)
-{
-    struct scene *copy = scene_create(source->name);
-    if (!copy)
-        return NULL;
-    bool done = COPY(copy, source, vertices, vertex) && COPY(copy, source, indices, index) &&
-                COPY(copy, source, primitives, primitive) && COPY(copy, source, meshes, mesh) &&
-                COPY(copy, source, materials, material) && COPY(copy, source, nodes, node) &&
-                COPY(copy, source, lights, light) && COPY(copy, source, images, image);
-    for (uint32_t i = 0; i < copy->image_count; i++)
-        image_retain(copy->images[i]);
-    copy->environment = source->environment;
-    copy->environment.pixels = NULL;
-    copy->revisions = source->revisions;
-    if (source->environment.pixels) {
-        size_t texels = (size_t)source->environment.width * source->environment.height;
-        copy->environment.pixels =
-            copy_array(source->environment.pixels, texels, 3 * sizeof(float));
-        done = done && copy->environment.pixels;
-    }
-    if (!done)
-        scene_destroy(&copy);
-    return copy;
-}
-
 static void move_to_origin(struct snapshot *snapshot)
 {
     double low[3] = {0}, high[3] = {0}, squared = 0.0;
@@ -174,7 +134,7 @@ struct snapshot *snapshot_copy(const struct scene *scene, bool all_blinn_phong,
     if (snapshot) {
         snapshot->references = 1;
         snapshot->all_blinn_phong = all_blinn_phong;
-        snapshot->scene = copy_scene(scene);
+        snapshot->scene = scene_copy(scene);
     }
     if (snapshot && snapshot->scene)
         return snapshot;

@@ -245,6 +245,11 @@ struct scene {
 struct scene *scene_create(const char *name);
 void scene_destroy(struct scene **scene);
 
+// A copy of what pictures depend on, for another thread: all but animations, cameras, files and
+// warnings. Images, which never change, are shared. Cost: that of copying vertices and indices,
+// tens of milliseconds for a million triangles. NULL when out of memory.
+struct scene *scene_copy(const struct scene *source);
+
 // glTF 2.0 defaults for every field: white, metallic 1, roughness 1, IOR 1.5, no textures.
 void scene_material_init(struct scene_material *material, const char *name);
 

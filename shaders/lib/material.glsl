@@ -9,6 +9,11 @@ layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
     material_block materials[];
 };
 
+// By the frame's quality, unless the shader says otherwise.
+#ifndef TEXTURE_ANISOTROPY
+#define TEXTURE_ANISOTROPY frame.textures.x
+#endif
+
 #define TEXTURED (COLOR_CLASSES + DATA_CLASSES > 0)
 
 #if TEXTURED
@@ -132,9 +137,9 @@ void set_filter(inout footprint f, vec2 dx, vec2 dy, float level_dither, float e
         f.samples = 1.0;
         return;
     }
-    float minor = max(min(length_x, length_y), major / frame.textures.x);
+    float minor = max(min(length_x, length_y), major / TEXTURE_ANISOTROPY);
     f.lod = log2(minor) + level_dither;
-    f.samples = clamp(ceil(major / max(minor, 1.0)), 1.0, frame.textures.x);
+    f.samples = clamp(ceil(major / max(minor, 1.0)), 1.0, TEXTURE_ANISOTROPY);
 }
 
 footprint find_footprint(uint texture_number, texture_point point)

@@ -1,5 +1,9 @@
 // Writes the visibility id of the triangle (colour), after the alpha test where there is a mask.
 // LIST: instead appends the fragment to its pixel's list of transparent layers.
+#if SHADOW_VIEW
+// Shadow maps are shared by views of different quality, so they must not depend on it.
+#define TEXTURE_ANISOTROPY 1.0
+#endif
 #include "lib/material.glsl"
 
 layout(location = 0) flat in uvec2 fragment_numbers; // visibility id, material

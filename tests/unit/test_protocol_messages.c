@@ -136,6 +136,13 @@ static void requests_fail_with_the_stated_code(void **state)
          "roughness"},
         {REQUEST("session.hello", "{\"protocol\":2}"), RPC_INVALID_PARAMS, "protocol"},
         {REQUEST("camera.set", "{\"eye\":[0,0,1e30]}"), RPC_INVALID_PARAMS, "eye"},
+        {REQUEST("accuracy.start", "{\"ladder\":\"steep\"}"), RPC_INVALID_PARAMS, "ladder"},
+        {REQUEST("accuracy.start", "{\"ladder\":1}"), RPC_INVALID_PARAMS, "ladder"},
+        {REQUEST("accuracy.start", "{\"noise\":0.2}"), RPC_INVALID_PARAMS, "noise"},
+        {REQUEST("accuracy.start", "{\"noise\":0.0004}"), RPC_INVALID_PARAMS, "noise"},
+        {REQUEST("accuracy.start", "{\"noise\":\"0.01\"}"), RPC_INVALID_PARAMS, "noise"},
+        {REQUEST("accuracy.start", "{\"rung\":\"draft\"}"), RPC_INVALID_PARAMS, "rung"},
+        {REQUEST("accuracy.cancel", "{\"ladder\":\"quick\"}"), RPC_INVALID_PARAMS, "ladder"},
     };
     struct command *command = malloc(sizeof(*command));
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
@@ -169,6 +176,15 @@ static void requests_become_commands(void **state)
         0);
     assert_string_equal(command->id.json, "");
     assert_true(command->revision == 9);
+    assert_int_equal(parse(REQUEST("accuracy.start", "{}"), command, &error), 0);
+    assert_int_equal(command->ladder, LADDER_QUICK);
+    assert_true(command->noise == 0.01);
+    assert_int_equal(
+        parse(REQUEST("accuracy.start", "{\"ladder\":\"full\",\"noise\":0.0005}"), command, &error),
+        0);
+    assert_int_equal(command->ladder, LADDER_FULL);
+    assert_true(command->noise == 0.0005);
+    assert_int_equal(method_get_flags(METHOD_ACCURACY_START), 0);
     free(command);
 }
 
@@ -177,6 +193,8 @@ static void errors_tell_field_and_range_in_valid_utf8(void **state)
     (void)state;
     struct command *command = malloc(sizeof(*command));
     struct rpc_error error;
+    parse(REQUEST("accuracy.start", "{\"ladder\":\"steep\"}"), command, &error);
+    assert_non_null(strstr(error.message, "quick, full"));
     parse(REQUEST("settings.update", "{\"set\":{\"exposure_ev\":99}}"), command, &error);
     char *text = rpc_write_error(&command->id, &error);
     cJSON *reply = cJSON_Parse(text);

@@ -290,6 +290,9 @@ test('wants the token', async () => {
   const viewer = await Client.open(daemon.url);
   assert.equal((await viewer.call('session.hello', { token: 'look' })).result.role, 'viewer');
   assert.equal((await viewer.call('settings.update', { set: { gamma: 1 } })).error.code, -32001);
+  // Measuring changes nothing of the document.
+  assert.ok((await viewer.call('accuracy.start', { noise: 0.1 })).result);
+  assert.deepEqual((await viewer.call('accuracy.cancel', {})).result, {});
   assert.equal(await stopDaemon(daemon), 0);
   assert.equal((await editor.closed).code, 1001);
 });
