@@ -85,7 +85,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                        .cone_step = 0.5f,
                        .gather_mode = GATHER_RAYS,
                        .soft_shadows = true,
-                       .specular_roughness = 0.6f},
+                       .specular_roughness = 1.01f},
 };
 
 void render_settings_init(struct render_settings *settings)

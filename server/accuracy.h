@@ -149,7 +149,7 @@ void results_add(struct cJSON *results, struct cJSON *entry);
 // Writes results.json: whole, or it stays as it was.
 bool results_write(const struct cJSON *results, const char *folder, struct error *out_error);
 
-// Writes results.csv and the page: index.html, report.js, results.js.
+// Writes results.csv and the page: index.html, its scripts, results.js.
 bool results_write_report(const struct cJSON *results, const char *folder, struct error *out_error);
 
 struct accuracy_run {

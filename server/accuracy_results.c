@@ -351,5 +351,7 @@ bool results_write_report(const cJSON *results, const char *folder, struct error
     cJSON_free(text);
     return done && write_csv(results, folder, out_error) &&
            copy_report_file(folder, "index.html", out_error) &&
+           copy_report_file(folder, "error_chart.js", out_error) &&
+           copy_report_file(folder, "chart_view.js", out_error) &&
            copy_report_file(folder, "report.js", out_error);
 }

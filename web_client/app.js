@@ -1,6 +1,8 @@
+import { Measurement } from './accuracy/measurement.js';
 import { mapDirection, mapPoint, unmapDirection } from './math/affine.js';
 import { add, length, subtract } from './math/vector.js';
 import { Connection } from './net/connection.js';
+import { AccuracyTab } from './panel/accuracy_tab.js';
 import { LightTab } from './panel/light_tab.js';
 import { MaterialTab } from './panel/material_tab.js';
 import { RenderTab } from './panel/render_tab.js';
@@ -19,6 +21,7 @@ import { TokenDialog } from './ui/token_dialog.js';
 import { Camera } from './view/camera.js';
 import { CameraInput } from './view/camera_input.js';
 import { CameraSender } from './view/camera_sender.js';
+import { Comparison } from './view/comparison.js';
 import { Overlay } from './view/overlay.js';
 import { Picture } from './view/picture.js';
 import { ViewControls } from './view/view_controls.js';
@@ -53,6 +56,8 @@ export class App {
     this.sender = new CameraSender(this.connection, this.camera);
     this.picture = new Picture(byId('picture'));
     this.overlay = new Overlay(byId('overlay'));
+    this.comparison = new Comparison(byId('comparison-pictures'), byId('comparison'));
+    this.measurement = new Measurement(this.connection, document.baseURI);
     this.view = new ViewControls(byId('stage'), this.connection, (error) => this.toasts.showError(error));
     /** @type {any} the server's description of itself */
     this.hello = null;
@@ -64,6 +69,7 @@ export class App {
     this.renderTab = new RenderTab(byId('panel-render'), this);
     this.viewTab = new ViewTab(byId('panel-view'), this);
     this.stats = new StatsTab(byId('panel-stats'), this);
+    this.accuracy = new AccuracyTab(byId('panel-accuracy'), this);
     this.badge = new PictureBadge(byId('badge'));
     this.darkHint = new DarkHint(byId('dark-hint'), this);
   }
@@ -137,6 +143,7 @@ export class App {
       if (method === 'stats') this.#takeStats(params);
       else if (method === 'scene.changed') this.#applyEdits(params);
       else if (method === 'scene.loaded') this.#sceneLoaded(params);
+      else if (method === 'accuracy.progress') this.measurement.takeProgress(params);
       else if (method === 'session.notice') this.toasts.show(params.level, params.message);
     });
   }
@@ -160,6 +167,7 @@ export class App {
     this.editor.reset();
     this.timer.reset();
     this.picture.reset();
+    this.measurement.forget(); // the server measures for a connection
     this.view.begin(hello);
     this.viewTab.rebuild();
     // The camera of an earlier connection stays, if the scene is the same.
@@ -184,10 +192,18 @@ export class App {
 
   async #sceneLoaded(/** @type {any} */ params) {
     this.selection.clear();
+    this.#forgetMeasurement();
     if (params.camera) this.sender.adopt(params.camera);
     await this.#loadDocument();
     for (const warning of this.document.data?.warnings.slice(0, 3) ?? [])
       this.toasts.show('warn', warning);
+  }
+
+  /** What was measured is of another scene. */
+  #forgetMeasurement() {
+    if (this.measurement.isRunning) this.measurement.cancel().catch(() => {});
+    this.measurement.forget();
+    this.view.forgetRung();
   }
 
   #applyEdits(/** @type {any} */ params) {
@@ -284,7 +300,7 @@ export class App {
     byId('stage').dataset.converged = String(header.converged);
     byId('stage').dataset.cameraRevision = String(header.cameraRevision);
     const rows = this.parameters('view').find((/** @type {any} */ row) => row.name === 'quality')?.values;
-    this.badge.show(header, rows?.[header.quality] ?? '');
+    this.badge.show(header, this.view.rung || (rows?.[header.quality] ?? ''));
     this.overlay.pose = this.sender.poseOf(header.cameraRevision);
     this.overlay.aspect = header.width / header.height;
     this.overlay.draw();

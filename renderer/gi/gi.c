@@ -16,9 +16,9 @@
 // Ambient occlusion counts what is nearer than this share of the scene's diagonal.
 #define OCCLUSION_SHARE 0.05f
 // Pictures of a camera at rest that are averaged where pixels gather.
-#define GATHERED_PICTURES 4u
-// The same of rays, GATHER_RAYS_PER_PICTURE each.
-#define RAY_PICTURES 32u
+#define CONE_PICTURES 4u
+// The same of rays, one each.
+#define RAY_PICTURES 64u
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
@@ -317,7 +317,7 @@ static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
     frame->still_count = 1;
     if (frame->gather == GATHER_CACHE)
         return;
-    frame->still_frames = frame->gather == GATHER_RAYS ? RAY_PICTURES : GATHERED_PICTURES;
+    frame->still_frames = frame->gather == GATHER_RAYS ? RAY_PICTURES : CONE_PICTURES;
     if (!volume->light.converged) {
         frame->gather = GATHER_CACHE;
         frame->still_count = 0;

@@ -15,28 +15,16 @@ static const char *indirect_diffuse_skip_reason(const struct frame *frame)
     return shown ? NULL : "the debug view shows none";
 }
 
-// What rays have found is filtered each time that their number has doubled.
-static bool gather_by_rays(const struct frame *frame, const struct pass *pass,
-                           struct error *out_error)
+static bool gather_by_rays(const struct frame *frame, struct error *out_error)
 {
-    char extra[48];
-    uint32_t step = gi_gather_step(frame), pixels = step * GROUP_EDGE;
-    snprintf(extra, sizeof(extra), "GATHER_STEP %u\n", step);
-    const struct gpu_program *gather =
-        voxel_program(frame, pass, "gi/ray_gather.comp", extra, out_error);
-    const struct gpu_program *filter =
-        gather ? voxel_program(frame, pass, "gi/gather_filter.comp", extra, out_error) : NULL;
-    if (!filter)
+    const struct gpu_program *program = hit_program(frame, "gi/ray_gather.comp", out_error);
+    if (!program)
         return false;
-    uint32_t columns = (frame->width + pixels - 1) / pixels;
-    uint32_t rows = (frame->height + pixels - 1) / pixels;
-    gpu_dispatch(frame->gpu, gather, columns, rows, 1);
+    uint32_t pixels = gi_gather_step(frame) * GROUP_EDGE;
+    gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
+                 (frame->height + pixels - 1) / pixels, 1);
     gpu_barrier(frame->gpu);
-    if ((frame->still_count & (frame->still_count - 1)) == 0 ||
-        frame->still_count == frame->still_frames)
-        gpu_dispatch(frame->gpu, filter, columns, rows, 1);
-    gpu_barrier(frame->gpu);
-    return true;
+    return filter_gathered(frame, false, out_error);
 }
 
 static bool gather_at_pixels(const struct frame *frame, const struct pass *pass, const char *extra,
@@ -62,7 +50,7 @@ static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
     snprintf(extra, sizeof(extra), "GATHER %u\nFILTERED %d\nALONE %d\n",
              cached ? 0 : gi_gather_step(frame), rays, alone);
     if (!cached && frame->gather_now &&
-        !(rays ? gather_by_rays(frame, pass, out_error)
+        !(rays ? gather_by_rays(frame, out_error)
                : gather_at_pixels(frame, pass, extra, out_error)))
         return false;
     const struct gpu_program *program =
@@ -79,7 +67,7 @@ const struct pass indirect_diffuse_pass = {
     .name = "indirect_diffuse",
     .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                     EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) |
-                    EFFECT_BIT(EFFECT_INDIRECT_SPECULAR) | EFFECT_BIT(EFFECT_ALPHA_MASK),
+                    EFFECT_BIT(EFFECT_INDIRECT_SPECULAR),
     .use_count = 5,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

@@ -5,11 +5,7 @@
 #include "renderer/gi/gi.h"
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/resident/resident.h"
 #include "renderer/view.h"
-
-// What rays meet is lit by each lamp up to so many; beyond, as the voxels are.
-#define MOST_LIGHTS_OF_HITS 16u
 
 static const char *indirect_specular_skip_reason(const struct frame *frame)
 {
@@ -20,27 +16,14 @@ static const char *indirect_specular_skip_reason(const struct frame *frame)
     return shown ? NULL : "the debug view shows none";
 }
 
-// Effects that what a ray meets is shaded by. Lamps' sizes and tiles of the screen mean nothing
-// there.
-static const struct pass shading_of_hits = {
-    .effects_used = (SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ALPHA_MASK) |
-                     EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS)) &
-                    ~(EFFECT_BIT(EFFECT_SOFT_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES)),
-};
-
 static bool gather_by_rays(const struct frame *frame, struct error *out_error)
 {
-    char extra[128];
-    snprintf(extra, sizeof(extra),
-             "GATHER_STEP %u\nSOFT_SHADOWS 0\nLIGHT_TILES 0\nSHADOW_TAPS 1u\nLIT_HITS %d\n",
-             gi_gather_step(frame), frame->resident->counts.lights <= MOST_LIGHTS_OF_HITS);
-    const struct gpu_program *program =
-        voxel_program(frame, &shading_of_hits, "gi/ray_gloss.comp", extra, out_error);
+    const struct gpu_program *program = hit_program(frame, "gi/ray_gloss.comp", out_error);
     if (!program)
         return false;
     gpu_dispatch_indirect(frame->gpu, program, frame->view->glossy_tiles, 0);
     gpu_barrier(frame->gpu);
-    return true;
+    return filter_gathered(frame, true, out_error);
 }
 
 static bool indirect_specular_run(struct frame *frame, const struct pass *pass,

@@ -122,6 +122,14 @@ const struct gpu_program *voxel_program(const struct frame *frame, const struct 
                                         const char *shader, const char *extra,
                                         struct error *out_error);
 
+// The same for shaders that trace rays against the triangles and shade what they meet.
+const struct gpu_program *hit_program(const struct frame *frame, const char *shader,
+                                      struct error *out_error);
+
+// Averages over neighbours what rays from pixels have found, irradiance or what lobes mirror; each
+// time that the number of rays has doubled, and with the last.
+bool filter_gathered(const struct frame *frame, bool gloss, struct error *out_error);
+
 // Works out which cascades of the sun must be drawn; before the passes run.
 void shadow_map_place_cascades(struct frame *frame);
 

@@ -19,7 +19,7 @@ struct flat_triangle {
     float edge_b[3]; // from there
     float opacity;   // mean of a masked material
     float edge_c[3];
-    uint32_t flags; // TREE_LIT_DIRECTLY
+    uint32_t flags; // TREE_LIT_DIRECTLY, TREE_ONE_SIDED
 };
 
 // What Embree's builder makes, from its own memory.
@@ -62,8 +62,9 @@ static uint64_t content_key(const struct resident *resident)
     key = (key ^ now->geometry) * 1099511628211ull;
     key = (key ^ now->transforms) * 1099511628211ull;
     for (uint32_t i = 0; i < resident->counts.instances; i++)
-        key = (key ^ (blocks_light(&resident->instances[i]) +
-                      2u * emits_directly(&resident->instances[i]))) *
+        key = (key ^
+               (blocks_light(&resident->instances[i]) +
+                2u * emits_directly(&resident->instances[i]) + 4u * resident->instances[i].group)) *
               1099511628211ull;
     return key;
 }
@@ -131,20 +132,33 @@ static void add_triangle(struct tree_work *work, const double corners[3][3],
     work->triangles[work->triangle_count++] = triangle;
 }
 
+// Whether a placement turns triangles over: their edges then change places.
+static bool is_mirrored(const float m[16])
+{
+    double cross[3] = {(double)m[5] * m[10] - (double)m[6] * m[9],
+                       (double)m[6] * m[8] - (double)m[4] * m[10],
+                       (double)m[4] * m[9] - (double)m[5] * m[8]};
+    return m[0] * cross[0] + m[1] * cross[1] + m[2] * cross[2] < 0.0;
+}
+
 static void add_instance(struct tree_work *work, const struct resident_instance *instance)
 {
     const struct scene *scene = work->resident->scene;
     const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
+    const struct scene_material *material = &scene->materials[primitive->material];
     const float *matrix = scene->nodes[instance->node].world_from_local;
     struct flat_triangle traits = {
-        .opacity = opacity_of(work->resident, &scene->materials[primitive->material]),
-        .flags = emits_directly(instance) ? TREE_LIT_DIRECTLY : 0,
+        .opacity = opacity_of(work->resident, material),
+        .flags = (emits_directly(instance) ? TREE_LIT_DIRECTLY : 0) |
+                 (material->double_sided ? 0 : TREE_ONE_SIDED),
     };
+    bool mirrored = is_mirrored(matrix);
     for (uint32_t i = 0; i < instance->index_count / 3; i++) {
         double corners[3][3];
         for (int corner = 0; corner < 3; corner++) {
             uint32_t index = scene->indices[primitive->index_first + 3 * i + (uint32_t)corner];
-            place_corner(work, matrix, scene->vertices[index].position, corners[corner]);
+            int at = mirrored && corner > 0 ? 3 - corner : corner;
+            place_corner(work, matrix, scene->vertices[index].position, corners[at]);
         }
         traits.id = instance->first_id + i + 1;
         add_triangle(work, corners, &traits);

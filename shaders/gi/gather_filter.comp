@@ -1,33 +1,51 @@
-// Averages what pixels have gathered over the neighbours that lie on the same surface. In: G-buffer,
-// sums. Out: means.
+// Averages what rays from pixels have found over the neighbours that lie on the same surface. In:
+// G-buffer, sums. Out: means. GLOSS 0: irradiance; 1: what lobes mirror, where smooth surfaces keep their
+// own.
 //
 // A window of 5x5 whose rim counts half holds each place of an interleaved square of 4x4 once, so that
 // on a plane the noise of single pixels cancels.
 #include "lib/gbuffer.glsl"
-#include "lib/voxel.glsl"
+#include "lib/gathered.glsl"
+#include "lib/gloss_rule.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
-{
-    vec4 gathered[]; // sums; then the same filtered
-};
-
 // Neighbours off a surface's plane by a pixel's width at its distance hardly count.
 const float PLANE_PIXELS = 1.0;
+// From the first roughness on neighbours mirror something else, from the second about the same.
+const vec2 FILTERED_ROUGHNESS = vec2(0.1, 0.4);
+
+bool has_gathered(surface s)
+{
+    return s.shading < SHADE_UNLIT && (GLOSS == 0 || deserves_cone(s));
+}
+
+// Weight of a neighbour; `pixel_m`: distance between gathering pixels.
+float likeness(surface s, surface n, float pixel_m)
+{
+    float off = dot(n.position - s.position, s.geometric_normal) / (PLANE_PIXELS * pixel_m);
+    float cosine = max(dot(n.normal, s.normal), 0.0);
+    float cosine8 = cosine * cosine;
+    cosine8 *= cosine8;
+    cosine8 *= cosine8;
+    return has_gathered(n) ? exp(-off * off) * cosine8 : 0.0;
+}
 
 void main()
 {
     ivec2 place = ivec2(gl_GlobalInvocationID.xy);
-    ivec2 size = ivec2((frame.size.xy + uint(GATHER_STEP) - 1u) / uint(GATHER_STEP));
+    ivec2 size = ivec2(gathered_size());
     if (any(greaterThanEqual(place, size)))
         return;
+    const uint FROM = GLOSS != 0 ? GATHERED_GLOSS : GATHERED_LIGHT;
+    const uint TO = GLOSS != 0 ? GATHERED_GLOSS_MEANS : GATHERED_LIGHT_MEANS;
     surface s = gbuffer_load(uvec2(place * GATHER_STEP));
-    int at = place.y * size.x + place.x;
-    if (s.shading >= SHADE_UNLIT)
-        return;
-    float pixel_m = length(s.position - frame.eye.xyz) * length(frame.ray_dx.xyz) * float(GATHER_STEP);
-    vec4 sum = gathered[at];
+    float pixel_m = gathered_pixel_m(s);
+    float others = 1.0;
+#if GLOSS
+    others = smoothstep(FILTERED_ROUGHNESS.x, FILTERED_ROUGHNESS.y, s.roughness);
+#endif
+    vec4 sum = gathered[gathered_at(FROM, uvec2(place))];
     float weight = 1.0;
     for (int y = -2; y <= 2; y++)
         for (int x = -2; x <= 2; x++) {
@@ -36,17 +54,17 @@ void main()
                 any(greaterThanEqual(other, size)))
                 continue;
             surface n = gbuffer_load(uvec2(other * GATHER_STEP));
-            float off = dot(n.position - s.position, s.geometric_normal) / (PLANE_PIXELS * pixel_m);
-            float cosine = max(dot(n.normal, s.normal), 0.0);
-            float cosine8 = cosine * cosine;
-            cosine8 *= cosine8;
-            cosine8 *= cosine8;
-            float w = exp(-off * off) * cosine8 * (abs(x) == 2 ? 0.5 : 1.0) *
+            float w = others * likeness(s, n, pixel_m) * (abs(x) == 2 ? 0.5 : 1.0) *
                       (abs(y) == 2 ? 0.5 : 1.0);
-            if (n.shading >= SHADE_UNLIT)
-                w = 0.0;
-            sum += w * gathered[other.y * size.x + other.x];
+            if (w <= 0.0)
+                continue;
+            sum += w * gathered[gathered_at(FROM, uvec2(other))];
             weight += w;
         }
-    gathered[size.x * size.y + at] = sum / (weight * voxels.settle.y);
+#if GLOSS
+    vec4 mean = vec4(sum.rgb / max(sum.a, 1e-6), 1.0);
+#else
+    vec4 mean = sum / (weight * voxels.settle.y);
+#endif
+    gathered[gathered_at(TO, uvec2(place))] = mean;
 }

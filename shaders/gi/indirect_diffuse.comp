@@ -48,7 +48,7 @@ void main()
 #else
 layout(std430, binding = BIND_INDIRECT) readonly buffer indirect_storage
 {
-    vec4 gathered_sums[]; // FILTERED 1: and behind them means of neighbours
+    vec4 gathered_sums[]; // FILTERED 1: GATHERED_LIGHT_MEANS holds means of neighbours
 };
 
 // What a pixel has gathered; sums unless FILTERED.
@@ -56,7 +56,7 @@ vec4 gathered_at(uint at)
 {
 #if FILTERED
     uvec2 size = (frame.size.xy + uint(GATHER) - 1u) / uint(GATHER);
-    return gathered_sums[size.x * size.y + at];
+    return gathered_sums[uint(GATHERED_LIGHT_MEANS) * size.x * size.y + at];
 #else
     return gathered_sums[at] / voxels.settle.y;
 #endif

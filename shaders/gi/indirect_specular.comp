@@ -4,6 +4,7 @@
 #define CONE_SKIP 1
 #include "lib/gbuffer.glsl"
 #include "lib/environment.glsl"
+#include "lib/gathered.glsl"
 #include "lib/gloss.glsl"
 #include "lib/gloss_rule.glsl"
 #include "lib/radiance.glsl"
@@ -17,20 +18,14 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 };
 
 #if RAYS
-layout(std430, binding = BIND_INDIRECT) readonly buffer indirect_storage
-{
-    vec4 gathered[]; // sums of irradiance, means of it, then sums of what lobes mirror; w: their number
-};
-
+#define SPECULAR_OCCLUSION 1.0 // rays know what is in the way
 // What rays have found for the square of pixels that shares them.
 vec3 mirrored_light(surface s, uvec2 pixel)
 {
-    uvec2 size = (frame.size.xy + uint(GATHER_STEP) - 1u) / uint(GATHER_STEP);
-    uvec2 place = pixel / uint(GATHER_STEP);
-    vec4 found = gathered[2u * size.x * size.y + place.y * size.x + place.x];
-    return found.rgb / max(found.a, 1.0);
+    return gathered[gathered_at(GATHERED_GLOSS_MEANS, pixel / uint(GATHER_STEP))].rgb;
 }
 #else
+#define SPECULAR_OCCLUSION s.occlusion
 vec3 mirrored_light(surface s, uvec2 pixel)
 {
     vec3 mirror = reflect(-s.view, s.normal);
@@ -68,6 +63,6 @@ void main()
         vec3 f0 = mix(s.f0, s.base_color, s.metallic);
         float f90 = mix(s.f90, 1.0, s.metallic);
         vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
-        radiance[pixel_index(pixel)].rgb += reflected * light * (s.occlusion * voxels.light.y);
+        radiance[pixel_index(pixel)].rgb += reflected * light * (SPECULAR_OCCLUSION * voxels.light.y);
     }
 }

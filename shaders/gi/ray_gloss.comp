@@ -2,15 +2,10 @@
 // geometry, which is shaded where they meet it: LIT_HITS 1 by each lamp, 0 as the voxels are lit. In
 // the tiles that hold any gloss, one group each. In: tiles, G-buffer, tree of triangles, materials,
 // lights, shadow maps, irradiance. Out: sums over the frames in which nothing moved.
-#define CONE_SMOOTH 0
-#define CELLS_ACCESS readonly
 #include "lib/gbuffer.glsl"
-#include "lib/geometry.glsl"
-#include "lib/lighting.glsl"
-#include "lib/environment.glsl"
+#include "lib/gathered.glsl"
 #include "lib/gloss_rule.glsl"
 #include "lib/hit_light.glsl"
-#include "lib/irradiance_read.glsl"
 #include "lib/ray_sequence.glsl"
 
 layout(local_size_x = GROUP_EDGE / GATHER_STEP, local_size_y = GROUP_EDGE / GATHER_STEP) in;
@@ -19,11 +14,6 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 {
     uvec4 tile_arguments;
     uint tiles[];
-};
-
-layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
-{
-    vec4 gathered[]; // the last third: sums of what lobes mirror; w: their number
 };
 
 // A microfacet normal that the viewer sees, about +Z, of a surface of GGX roughness alpha (Heitz 2018,
@@ -43,36 +33,14 @@ vec3 sample_visible_normal(vec3 view, float alpha, vec2 u)
     return normalize(vec3(alpha * n.xy, max(n.z, 1e-6)));
 }
 
-// Radiance in cd/m^2 that a surface sends back along the ray that met it.
-vec3 hit_radiance(tree_hit hit, vec3 origin, vec3 direction, float spread, vec2 pixel)
+// What of a ray's light is reflected: Fresnel's part times the Smith terms that are left when facets
+// are drawn from those that the viewer sees, G2 / G1.
+float reflected_share(surface s, float v_h, float n_v, float n_l, float alpha)
 {
-    uint at = hit.triangle * TREE_TRIANGLE_TEXELS;
-    uint id = tree_triangle_texel(at).w;
-    bool lit_directly = (tree_triangle_texel(at + 2u).w & TREE_LIT_DIRECTLY) != 0u;
-    mat3 axes = frame_about(direction);
-    layer through;
-    surface s = load_surface(id, sight(origin + frame.tree.xyz, direction, axes[0] * spread,
-                                       axes[1] * spread, pixel), through);
-    vec3 emitted = lit_directly ? vec3(0.0) : s.emission;
-    if (s.shading >= SHADE_UNLIT)
-        return emitted;
-#if LIT_HITS
-    vec3 sum = emitted;
-#if PUNCTUAL_LIGHTS || AREA_LIGHTS
-    sum += direct_light(s, uvec2(0u));
-#endif
-    // Light that has been reflected already reaches matte and glossy parts alike as irradiance.
-    vec2 scale_bias = environment_brdf(s.roughness, clamp(dot(s.normal, s.view), 0.0, 1.0));
-    vec3 layered = s.f0 * scale_bias.x + s.f90 * scale_bias.y;
-    float kept = 1.0 - max(layered.r, max(layered.g, layered.b));
-    vec3 f0 = mix(s.f0, s.base_color, s.metallic);
-    vec3 reflectance = s.base_color * ((1.0 - s.metallic) * kept) + f0 * scale_bias.x +
-                       mix(s.f90, 1.0, s.metallic) * scale_bias.y;
-    vec3 light = cached_irradiance(s.position, s.geometric_normal).rgb;
-    return sum + reflectance * light * (s.occlusion * voxels.anchor.w * voxels.light.y);
-#else
-    return voxel_light_at(s.position, direction) * voxels.anchor.w;
-#endif
+    vec3 fresnel = specular_fresnel(s, v_h);
+    vec2 squared = vec2(n_v, n_l) * vec2(n_v, n_l);
+    vec2 hidden = 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 - squared) / max(squared, 1e-8)) - 1.0);
+    return luminance(fresnel) * (1.0 + hidden.x) / (1.0 + hidden.x + hidden.y);
 }
 
 void main()
@@ -93,37 +61,24 @@ void main()
     }
     if (!wanted)
         return;
-    uvec2 size = (frame.size.xy + uint(GATHER_STEP) - 1u) / uint(GATHER_STEP);
     uvec2 place = first / uint(GATHER_STEP);
-    uint at = 2u * size.x * size.y + place.y * size.x + place.x;
+    uint at = gathered_at(GATHERED_GLOSS, place);
     uint picture = uint(voxels.settle.y) - 1u;
     vec4 sum = picture == 0u ? vec4(0.0) : gathered[at];
     float alpha = alpha_of(s);
     mat3 axes = frame_about(s.normal);
     vec3 view = s.view * axes;
-    view.z = max(view.z, 1e-3);
-    vec3 origin = tree_origin(s.position, s.geometric_normal);
-    float pixel_spread = length(frame.ray_dx.xyz) * float(GATHER_STEP);
-    float eye_m = length(s.position - frame.eye.xyz);
-    for (uint i = 0u; i < uint(GATHER_RAYS_PER_PICTURE); i++) {
-        vec3 u = sequence_point((picture * uint(GATHER_RAYS_PER_PICTURE) + i) * 16u +
-                                interleaved_order(place));
-        vec3 facet = sample_visible_normal(normalize(view), alpha, u.xy);
-        vec3 direction = axes * reflect(-normalize(view), facet);
-        if (dot(direction, s.geometric_normal) <= 0.0 || dot(direction, s.normal) <= 0.0)
-            continue;
-        direction = normalize(direction);
-        tree_hit hit = find_nearest(origin, direction, 1e30, u.z);
-        vec3 light = vec3(0.0);
-        if (hit.triangle != TREE_LEAF) {
-            float spread = pixel_spread * (1.0 + eye_m / max(hit.distance, 1e-6)) + 0.25 * alpha;
-            light = hit_radiance(hit, origin, direction, spread, vec2(pixel));
-        }
-#if ENVIRONMENT_LIGHT
-        else
-            light = environment_specular(direction, 0.5 * s.roughness);
-#endif
-        sum += vec4(light, 1.0);
+    view = normalize(vec3(view.xy, max(view.z, 1e-3)));
+    vec2 spread = vec2(gathered_pixel_m(s),
+                       length(frame.ray_dx.xyz) * float(GATHER_STEP) + 0.25 * alpha);
+    vec3 u = ray_numbers(place, picture);
+    vec3 facet = sample_visible_normal(view, alpha, u.xy);
+    vec3 direction = axes * reflect(-view, facet);
+    if (dot(direction, s.geometric_normal) > 0.0 && dot(direction, s.normal) > 0.0) {
+        float share = reflected_share(s, dot(view, facet), view.z, dot(direction, s.normal), alpha);
+        ray_light found = light_along(tree_origin(s.position, s.geometric_normal),
+                                      normalize(direction), u.z, spread, vec2(pixel));
+        sum += share * vec4(found.radiance, 1.0);
     }
     gathered[at] = sum;
 }

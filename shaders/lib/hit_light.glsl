@@ -1,15 +1,22 @@
-// What a ray against the real geometry sees: the light that voxels hold where it meets a triangle, or
-// the environment.
-#include "lib/cone.glsl"
+// What a ray against the real geometry sees: surfaces, shaded where it meets them, or the environment.
+// LIT_HITS 1: surfaces are lit by each lamp; 0: as the voxels around them are.
+#define CONE_SMOOTH 0
+#define CELLS_ACCESS readonly
+#include "lib/geometry.glsl"
+#include "lib/lighting.glsl"
 #include "lib/environment.glsl"
+#include "lib/irradiance_read.glsl"
 #include "lib/triangle_tree.glsl"
 
-// Roughness whose lobe is about as wide as the share of a hemisphere that a ray stands for.
-const float RAY_ROUGHNESS = 0.2;
+struct ray_light {
+    vec3 radiance;    // cd/m^2
+    float distance_m; // 1e30 where nothing is met
+};
+
 // Optical depth across a voxel from which its light counts; else the next coarser level is read.
 const float HIT_DEPTH = 0.1;
 
-// Radiance / scale of the surfaces at a place that face a ray.
+// Radiance / scale of the surfaces at a place that face a ray, as voxels have it.
 vec3 voxel_light_at(vec3 world, vec3 direction)
 {
     vec3 position = voxel_position(world);
@@ -22,19 +29,65 @@ vec3 voxel_light_at(vec3 world, vec3 direction)
     return value.a > 1e-6 ? value.rgb / value.a : vec3(0.0);
 }
 
-// Radiance / scale along a ray, and 1 less the occlusion by what is near. `origin` is relative to
-// frame.tree, `direction` unit.
-vec4 light_along(vec3 origin, vec3 direction, float chance)
+// Share of irradiance / pi that a surface reflects towards the viewer, by its matte and glossy parts.
+vec3 whole_reflectance(surface s)
+{
+    float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
+    vec2 scale_bias = environment_brdf(s.roughness, n_v);
+    vec3 f0 = mix(s.f0, s.base_color, s.metallic);
+    return s.base_color * ((1.0 - s.metallic) * mean_diffuse_share(s, n_v)) + f0 * scale_bias.x +
+           mix(s.f90, 1.0, s.metallic) * scale_bias.y;
+}
+
+// What a surface sends back along the ray that met it. `spread` is the distance in m between rays of
+// neighbouring pixels there, over that to the hit.
+vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float spread, vec2 pixel)
+{
+    uint at = hit.triangle * TREE_TRIANGLE_TEXELS;
+    uint id = tree_triangle_texel(at).w;
+    mat3 axes = frame_about(direction);
+    layer through;
+    surface s = load_surface(id, sight(origin + frame.tree.xyz, direction, axes[0] * spread,
+                                       axes[1] * spread, pixel), through);
+    vec3 sum = (flags & TREE_LIT_DIRECTLY) != 0u ? vec3(0.0) : s.emission;
+    if (s.shading >= SHADE_UNLIT) // a drawing, not a source of light
+        return vec3(0.0);
+#if PUNCTUAL_LIGHTS || AREA_LIGHTS
+    sum += direct_light(s, uvec2(0u));
+#endif
+#if FEEDBACK
+    vec3 light = cached_irradiance(s.position, s.geometric_normal).rgb;
+    sum += whole_reflectance(s) * light * (voxels.anchor.w * voxels.light.y);
+#endif
+    return sum;
+}
+
+// `origin` is relative to frame.tree, `direction` unit, `chance` uniform in [0, 1). `spread`: distance
+// in m between rays of neighbouring pixels where they start, and how much that grows per m.
+ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, vec2 pixel)
 {
     tree_hit hit = find_nearest(origin, direction, 1e30, chance);
-    bool met = hit.triangle != TREE_LEAF;
-    vec3 world = origin + frame.tree.xyz + (met ? hit.distance : 0.0) * direction;
-    vec3 light = voxel_light_at(world, direction);
-#if ENVIRONMENT_LIGHT
-    vec3 sky = environment_specular(direction, RAY_ROUGHNESS) / voxels.anchor.w;
+    ray_light found;
+    found.distance_m = hit.distance;
+    found.radiance = vec3(0.0);
+    if (hit.triangle != TREE_LEAF) {
+        uint at = hit.triangle * TREE_TRIANGLE_TEXELS;
+        uvec4 edge_b = tree_triangle_texel(at + 1u);
+        uvec4 edge_c = tree_triangle_texel(at + 2u);
+        vec3 face = cross(uintBitsToFloat(edge_b.xyz), uintBitsToFloat(edge_c.xyz));
+        if ((edge_c.w & TREE_ONE_SIDED) != 0u && dot(face, direction) > 0.0)
+            return found;
+#if LIT_HITS
+        found.radiance = hit_radiance(hit, edge_c.w, origin, direction,
+                                      spread.x / max(hit.distance, 1e-6) + spread.y, pixel);
 #else
-    vec3 sky = vec3(0.0);
+        vec3 world = origin + frame.tree.xyz + hit.distance * direction;
+        found.radiance = voxel_light_at(world, direction) * voxels.anchor.w;
 #endif
-    float open = met ? min(hit.distance / voxels.light.x, 1.0) : 1.0;
-    return vec4(met ? light : sky, open);
+    }
+#if ENVIRONMENT_LIGHT
+    else
+        found.radiance = environment_specular(direction, min(0.5 * spread.y, 0.5));
+#endif
+    return found;
 }

@@ -10,9 +10,7 @@ vec3 reflect_irradiance(surface s, vec4 light)
 #if SPECULAR
     float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
-    vec3 layer = s.f0 * scale_bias.x + s.f90 * scale_bias.y;
-    float kept = 1.0 - max(layer.r, max(layer.g, layer.b));
-    reflectance = s.base_color * ((1.0 - s.metallic) * kept);
+    reflectance = s.base_color * ((1.0 - s.metallic) * mean_diffuse_share(s, n_v));
 #if INDIRECT_SPECULAR
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
@@ -20,7 +18,11 @@ vec3 reflect_irradiance(surface s, vec4 light)
         reflectance += f0 * scale_bias.x + f90 * scale_bias.y;
 #endif
 #endif
+#if FILTERED
+    float open = 1.0; // rays know what is in the way
+#else
     float open = s.occlusion;
+#endif
 #if AMBIENT_OCCLUSION
     open *= light.a;
 #endif

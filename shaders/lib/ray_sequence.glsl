@@ -9,10 +9,31 @@ uint interleaved_order(uvec2 p)
     return low * 4u + high;
 }
 
+// Squares are shifted against each other, so that what one misses another finds (Jarzynski and Olano
+// 2020, "Hash Functions for GPU Rendering": pcg3d).
+uvec3 hash_square(uvec2 square)
+{
+    uvec3 v = uvec3(square, 1u) * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> 16;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
 // A point of the additive recurrence on the generalised golden ratio (Roberts 2018, "The Unreasonable
 // Effectiveness of Quasirandom Sequences"), and a third number for what else is left to chance.
-vec3 sequence_point(uint i)
+vec3 sequence_point(uint i, uvec2 square)
 {
-    uvec3 bits = uvec3(0xc13fa9a9u, 0x91e10da5u, 0x9e3779b9u) * (i + 1u);
+    uvec3 bits = uvec3(0xc13fa9a9u, 0x91e10da5u, 0x9e3779b9u) * (i + 1u) + hash_square(square);
     return vec3(bits >> 8) * (1.0 / 16777216.0);
+}
+
+// Random numbers of a pixel for its ray in a picture.
+vec3 ray_numbers(uvec2 place, uint picture)
+{
+    return sequence_point(picture * 16u + interleaved_order(place), place >> 2);
 }

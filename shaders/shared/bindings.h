@@ -54,12 +54,11 @@
 #define UNIT_TREE_NODES       16
 #define UNIT_TREE_TRIANGLES   17
 
-// A tree of boxes over the scene's triangles, for rays: TREE_NODE_TEXELS texels of 4 words a node and
-// TREE_TRIANGLE_TEXELS a triangle, in rows of 2^TREE_ROW_BITS texels. A node has for each of two
-// children lower corner and child, upper corner. A child is a node, or
-// TREE_LEAF | first triangle << TREE_COUNT_BITS | triangles. A triangle has its first corner and
-// visibility id, then an edge from there and mean opacity, then the other edge and
-// flags.
+// A tree of boxes over the scene's triangles, for rays: TREE_NODE_TEXELS texels of 4 words a node
+// and TREE_TRIANGLE_TEXELS a triangle, in rows of 2^TREE_ROW_BITS texels. A node has for each of
+// two children lower corner and child, upper corner. A child is a node, or TREE_LEAF | first
+// triangle << TREE_COUNT_BITS | triangles. A triangle has its first corner and visibility id, then
+// an edge from there and mean opacity, then the other edge and flags.
 #define TREE_ROW_BITS        12
 #define TREE_NODE_TEXELS     4
 #define TREE_TRIANGLE_TEXELS 3
@@ -67,8 +66,17 @@
 #define TREE_COUNT_BITS      3
 #define TREE_MAX_DEPTH       48
 #define TREE_LIT_DIRECTLY    1u // its emission reaches others as a planar emitter's
+#define TREE_ONE_SIDED       2u // stops light on its back, but sends none
 
-#define GATHER_RAYS_PER_PICTURE 2
+// Pictures of what rays from pixels have found, 4 floats a pixel: sums of irradiance / pi / scale
+// and openness; their means; sums of what lobes mirror, in cd/m^2 times the share that is
+// reflected, and of those shares; their quotients. The latter two only where there is gloss.
+#define GATHERED_LIGHT         0
+#define GATHERED_LIGHT_MEANS   1
+#define GATHERED_GLOSS         2
+#define GATHERED_GLOSS_MEANS   3
+#define GATHERED_WITHOUT_GLOSS 2
+#define GATHERED_PICTURES      4
 
 // Work groups
 #define GROUP_EDGE            8

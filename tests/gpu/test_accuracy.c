@@ -200,10 +200,10 @@ static void assert_file(const char *name)
 static void test_a_run(void **state)
 {
     (void)state;
-    static const char *const files[] = {"results.json",   "results.csv",       "results.js",
-                                        "index.html",     "report.js",         "reference.pfm",
-                                        "reference.png",  "none-strip.png",    "half-error.png",
-                                        "half-strip.png", "half-converged.png"};
+    static const char *const files[] = {
+        "results.json",   "results.csv",    "results.js",        "index.html",    "report.js",
+        "error_chart.js", "chart_view.js",  "reference.pfm",     "reference.png", "none-strip.png",
+        "half-error.png", "half-strip.png", "half-converged.png"};
     write_file("ladder.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}]");
     assert_int_equal(run_accuracy("48x27"), 0);
     // A second rung is measured; the first is not measured again.

@@ -29,9 +29,16 @@ static const struct expected {
     uint32_t point_lights;
     uint32_t cameras;
 } expected_scenes[] = {
-    {"cornell", 30, 0, 1},    {"cornell-objects", 20000, 1, 2},
-    {"atrium", 100000, 0, 4}, {"atrium-lights", 100000, 256, 4},
-    {"furnace", 1000, 0, 1},  {"material-grid", 10000, 0, 1},
+    {"cornell", 30, 0, 1},
+    {"cornell-objects", 20000, 1, 2},
+    {"cornell-objects-diffuse", 20000, 1, 2},
+    {"cornell-objects-glossy", 20000, 1, 2},
+    {"cornell-objects-glass", 20000, 1, 2},
+    {"cornell-objects-emissive", 20000, 0, 2},
+    {"atrium", 100000, 0, 4},
+    {"atrium-lights", 100000, 256, 4},
+    {"furnace", 1000, 0, 1},
+    {"material-grid", 10000, 0, 1},
 };
 
 #define SCENE_COUNT (sizeof(expected_scenes) / sizeof(expected_scenes[0]))
@@ -188,6 +195,47 @@ static void test_objects_are_closed_and_of_their_size(void **state)
     scene_destroy(&scene);
 }
 
+static const struct scene_material *material_of(const struct scene *scene, const char *mesh)
+{
+    return &scene->materials[find_primitive(scene, mesh)->material];
+}
+
+static float emission_of(const struct scene_material *material)
+{
+    return material->emissive_strength *
+           (material->emissive[0] + material->emissive[1] + material->emissive[2]);
+}
+
+static void test_objects_of_one_kind(void **state)
+{
+    (void)state;
+    static const char *const objects[] = {"copper teapot", "glass ball", "lacquered ring",
+                                          "rough stone"};
+    struct scene *diffuse = build("cornell-objects-diffuse");
+    struct scene *glossy = build("cornell-objects-glossy");
+    struct scene *glass = build("cornell-objects-glass");
+    struct scene *emissive = build("cornell-objects-emissive");
+    for (int i = 0; i < 4; i++) {
+        const struct scene_material *matt = material_of(diffuse, objects[i]);
+        assert_true(matt->metallic == 0.0f && matt->transmission == 0.0f && matt->ior == 1.0f);
+        const struct scene_material *lacquer = material_of(glossy, objects[i]);
+        assert_true(lacquer->roughness < 0.2f && lacquer->ior > 1.0f && lacquer->metallic == 0.0f);
+        const struct scene_material *clear = material_of(glass, objects[i]);
+        assert_true(clear->transmission == 1.0f && clear->roughness == 0.0f);
+        // What is closed refracts; the pot's wall is thin.
+        assert_true((clear->thickness_m > 0.0f) == (i != 0));
+        assert_true(emission_of(material_of(emissive, objects[i])) > 0.1f);
+    }
+    // Nothing else shines there, and nothing shines by itself but the lamp elsewhere.
+    assert_true(emission_of(material_of(emissive, "lamp")) == 0.0f);
+    assert_true(emission_of(material_of(glass, "lamp")) > 10.0f);
+    assert_int_equal(emissive->light_count, 0);
+    scene_destroy(&diffuse);
+    scene_destroy(&glossy);
+    scene_destroy(&glass);
+    scene_destroy(&emissive);
+}
+
 static void test_teapot_has_newells_proportions(void **state)
 {
     (void)state;
@@ -342,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_scenes_are_sound),
         cmocka_unit_test(test_builds_are_equal),
         cmocka_unit_test(test_objects_are_closed_and_of_their_size),
+        cmocka_unit_test(test_objects_of_one_kind),
         cmocka_unit_test(test_teapot_has_newells_proportions),
         cmocka_unit_test(test_cameras_see_fronts_alone),
     };

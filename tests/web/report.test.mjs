@@ -62,7 +62,7 @@ describe('the report of an accuracy run', () => {
 
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'voxcast-report-'));
-    for (const name of ['index.html', 'report.js']) copyFileSync(source(name), join(folder, name));
+    for (const name of ['index.html', 'report.js', 'error_chart.js', 'chart_view.js']) copyFileSync(source(name), join(folder, name));
     writeFileSync(join(folder, 'results.js'), `globalThis.results = ${JSON.stringify(results)};\n`);
     browser = await openBrowser();
     page = browser.page;
@@ -107,7 +107,12 @@ describe('the report of an accuracy run', () => {
     assert.match(await tip.locator('img').getAttribute('src'), /good\.png/);
     await page.locator('.point').nth(3).focus();
     assert.match(await tip.innerText(), /^best/);
-    await page.locator('.point').nth(3).press('Tab');
+    await page.locator('.point').nth(3).press('ArrowLeft');
+    assert.match(await tip.innerText(), /^worse/);
+    await page.keyboard.press('Home');
+    assert.match(await tip.innerText(), /^none/);
+    await page.keyboard.press('Tab');
+    assert.equal(await tip.isVisible(), false);
   });
 
   test('opens the pictures of a point, with the times of its passes', async () => {
@@ -130,7 +135,7 @@ describe('the report of an accuracy run', () => {
     const row = page.locator('tr', { hasText: 'good' });
     assert.match(await row.innerText(), /0\.2/);
     await page.locator('select[name=part]').selectOption({ label: 'indirect light alone' });
-    assert.match(await page.locator('#chart').innerHTML(), /No rung has values/);
+    assert.match(await page.locator('#chart').innerHTML(), /No setting has values/);
     await page.locator('select[name=state]').selectOption({ label: 'final picture' });
     await page.locator('select[name=time]').selectOption({ index: 3 });
     assert.match(await page.locator('#chart').innerHTML(), /from an edit of a light/);

@@ -7,6 +7,9 @@
  * @property {import('../scene/edit_timer.js').EditTimer} timer
  * @property {import('../scene/selection.js').Selection} selection
  * @property {import('../view/camera.js').Camera} camera
+ * @property {import('../view/picture.js').Picture} picture
+ * @property {import('../view/comparison.js').Comparison} comparison
+ * @property {import('../accuracy/measurement.js').Measurement} measurement
  * @property {import('../ui/toasts.js').Toasts} toasts
  * @property {import('../view/view_controls.js').ViewControls} view
  * @property {(group: string) => import('./parameter_controls.js').Parameter[]} parameters the

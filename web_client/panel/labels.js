@@ -3,6 +3,8 @@ const UNIT_ENDINGS = /** @type {Record<string, string>} */ ({ _m: 'm', _rad: '°
 
 const ABBREVIATIONS = new Set(['gi', 'ggx', 'pbr', 'ior', 'fov', 'aces', 'gpu', 'jpeg']);
 
+const SPELLINGS = /** @type {Record<string, string>} */ ({ gbuffer: 'G-buffer' });
+
 /**
  * What people read for a parameter: its name in words, and its unit.
  * @param {{name: string, unit: string}} parameter
@@ -18,7 +20,7 @@ export function labelOf({ name, unit }) {
 export function wordsOf(name) {
   const words = name
     .split('_')
-    .map((word) => (ABBREVIATIONS.has(word) ? word.toUpperCase() : word))
+    .map((word) => SPELLINGS[word] ?? (ABBREVIATIONS.has(word) ? word.toUpperCase() : word))
     .join(' ');
   return words.charAt(0).toUpperCase() + words.slice(1);
 }

@@ -19,7 +19,9 @@ export class RenderTab {
     this.controls = element('div', {});
     this.effects = makeEffectList();
     this.noEffects = element('p', { class: 'hint' }, 'The first frame will tell.');
-    root.append(element('h2', {}, 'Rendering'), this.controls, element('h2', {}, 'Effects of this frame'));
+    this.measured = element('p', { class: 'note', hidden: true });
+    app.view.addEventListener('rung', () => this.#showRung());
+    root.append(element('h2', {}, 'Rendering'), this.measured, this.controls, element('h2', {}, 'Effects of this frame'));
     root.append(this.noEffects, this.effects);
     /** @type {{refresh: () => void}[]} */
     this.sections = [];
@@ -52,6 +54,13 @@ export class RenderTab {
     const isOff = this.app.target('settings').get('gi_method') === 'none';
     this.giRoot?.classList.toggle('off', isOff);
     this.offHint.hidden = !isOff;
+  }
+
+  /** What is chosen here rests while a measured setting draws. */
+  #showRung() {
+    const { rung } = this.app.view;
+    this.measured.hidden = rung === '';
+    this.measured.textContent = `This view is drawn with ${rung}, as chosen in the tab of accuracy. What is set here shows when it goes back to its own settings.`;
   }
 
   /** @param {any} stats a notification of the server */

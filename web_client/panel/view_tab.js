@@ -17,6 +17,9 @@ const KEYS = [
   ['Ctrl Z, Ctrl Y', 'undo, redo'],
 ];
 
+/** The stage decides the size, the tab of accuracy the measured setting; quality is in the tab of rendering. */
+const ELSEWHERE = ['width', 'height', 'rung'];
+
 /** How this client looks: picture size, pause, its camera, and the keys. */
 export class ViewTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
@@ -37,10 +40,7 @@ export class ViewTab {
     const sizes = Object.fromEntries(Object.keys(RENDER_SIZES).map((name) => [wordsOf(name), name]));
     const size = picture.add(view, 'sizeChoice', sizes).name('Render size');
     size.onChange((/** @type {string} */ choice) => view.chooseSize(choice));
-    // The stage decides the size; the tab of rendering has what is about quality.
-    const rows = app
-      .parameters('view')
-      .filter(({ name }) => name !== 'width' && name !== 'height' && !isRenderOption(name));
+    const rows = app.parameters('view').filter(({ name }) => !ELSEWHERE.includes(name) && !isRenderOption(name));
     const options = addParameterControls(picture, rows, {
       get: (name) => view.options[name],
       set: (name, value) => view.configure({ [name]: value }),

@@ -4,8 +4,8 @@ const SETTLE_MS = 150;
 
 /**
  * This client's view: its size follows the stage, its options follow the panel, and it pauses while
- * the page is hidden.
- * Event: `changed`, when options are other than before.
+ * the page is hidden. It may be drawn with a measured setting instead of the shared ones.
+ * Events: `changed`, when options are other than before, and `rung`, when the measured setting is.
  */
 export class ViewControls extends EventTarget {
   /**
@@ -23,6 +23,8 @@ export class ViewControls extends EventTarget {
     this.mode = 'orbit';
     /** @type {Record<string, any>} chosen options of group view */
     this.options = {};
+    /** Name of the measured setting that draws this view; "": the shared settings do. */
+    this.rung = '';
     this.server = { isSoftware: false, maxWidth: 3840, maxHeight: 2160 };
     /** @type {number | undefined} */
     this.timer = undefined;
@@ -40,9 +42,28 @@ export class ViewControls extends EventTarget {
       maxWidth: hello.limits.width,
       maxHeight: hello.limits.height,
     };
-    const { width: _width, height: _height, ...options } = hello.view;
+    // Settings are measured for a connection: none is chosen at its begin, and sizes do not change the choice.
+    const { width: _width, height: _height, rung: _rung, ...options } = hello.view;
     this.options = { ...options, ...this.options };
+    this.#setRung('');
     this.send();
+  }
+
+  /** Draws this view with a setting of this client's newest measurement. @param {string} rung its name, or "" */
+  async chooseRung(rung) {
+    await this.connection.call('view.configure', { rung });
+    this.#setRung(rung);
+  }
+
+  /** The server has gone back to the shared settings, as it does for another scene or measurement. */
+  forgetRung() {
+    this.#setRung('');
+  }
+
+  #setRung(/** @type {string} */ rung) {
+    if (rung === this.rung) return;
+    this.rung = rung;
+    this.dispatchEvent(new Event('rung'));
   }
 
   /** @param {Record<string, any>} set fields of group view */

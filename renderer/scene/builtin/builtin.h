@@ -7,6 +7,10 @@
 // Each fills an empty scene. False when memory ends.
 bool builtin_build_cornell(struct scene *scene);
 bool builtin_build_cornell_objects(struct scene *scene);
+bool builtin_build_cornell_objects_diffuse(struct scene *scene);
+bool builtin_build_cornell_objects_glossy(struct scene *scene);
+bool builtin_build_cornell_objects_glass(struct scene *scene);
+bool builtin_build_cornell_objects_emissive(struct scene *scene);
 bool builtin_build_atrium(struct scene *scene);
 bool builtin_build_atrium_lights(struct scene *scene);
 bool builtin_build_furnace(struct scene *scene);

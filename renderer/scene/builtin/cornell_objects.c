@@ -1,5 +1,6 @@
 // Four objects in the Cornell room, one each of polished metal, clear glass, glossy lacquer and
-// rough stone, and a dim warm lamp to move about.
+// rough stone, and a dim warm lamp to move about; or all four of one kind, so that what goes wrong
+// with one kind of light transport shows by itself.
 #include <math.h>
 
 #include "renderer/scene/builtin/builtin.h"
@@ -10,6 +11,12 @@
 #define TORUS_RING_M      0.05f
 #define TORUS_TUBE_M      0.022f
 #define STONE_HALF_EDGE_M 0.07f
+
+#define GLOSSY_ROUGHNESS 0.15f
+#define GLOW_RADIANCE    3.0f // cd/m^2
+
+// What all four objects are made of.
+enum object_kind { KIND_OWN, KIND_DIFFUSE, KIND_GLOSSY, KIND_GLASS, KIND_EMISSIVE };
 
 struct object {
     const char *name;
@@ -95,6 +102,49 @@ static void describe_objects(struct object objects[4])
     glm_vec3_copy((vec3){0.55f, 0.47f, 0.36f}, stone->material.base_color);
 }
 
+// Makes an object's material one of a kind; colours stay, but glass has none.
+static void dress(struct object *object, enum object_kind kind)
+{
+    struct scene_material *material = &object->material;
+    if (kind == KIND_OWN)
+        return;
+    material->metallic = 0.0f;
+    material->transmission = kind == KIND_GLASS ? 1.0f : 0.0f;
+    // The pot is open: its wall is a thin one.
+    bool closed = !material->double_sided;
+    material->thickness_m = kind == KIND_GLASS && closed ? 2.0f * GLASS_RADIUS_M : 0.0f;
+    material->roughness = 1.0f;
+    if (kind == KIND_GLOSSY)
+        material->roughness = GLOSSY_ROUGHNESS;
+    if (kind == KIND_GLASS) {
+        material->roughness = 0.0f;
+        glm_vec3_one(material->base_color);
+    }
+    if (kind == KIND_DIFFUSE)
+        material->ior = 1.0f;
+    if (kind == KIND_EMISSIVE) {
+        glm_vec3_copy(material->base_color, material->emissive);
+        material->emissive_strength = GLOW_RADIANCE;
+    }
+}
+
+// The objects alone are to shine.
+static void put_out_lamp(struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        glm_vec3_zero(scene->materials[i].emissive);
+}
+
+static bool add_reading_light(struct scene *scene)
+{
+    struct scene_light lamp;
+    scene_light_init(&lamp, SCENE_LIGHT_POINT, "reading light");
+    lamp.intensity = 0.15f;
+    glm_vec3_copy((vec3){1.0f, 0.72f, 0.42f}, lamp.color);
+    return scene_add_light(scene, &lamp, (float[3]){0.02f, 0.3f, 0.16f}, (float[3]){0, -1, 0}) !=
+           SCENE_NONE;
+}
+
 static bool add_object(struct scene *scene, const struct object *object)
 {
     struct mesh_builder builder;
@@ -115,22 +165,46 @@ static bool add_object(struct scene *scene, const struct object *object)
     return true;
 }
 
-bool builtin_build_cornell_objects(struct scene *scene)
+static bool build(struct scene *scene, enum object_kind kind)
 {
     struct object objects[4];
     describe_objects(objects);
     if (!builtin_add_cornell_room(scene))
         return false;
-    for (int i = 0; i < 4; i++)
+    if (kind == KIND_EMISSIVE)
+        put_out_lamp(scene);
+    for (int i = 0; i < 4; i++) {
+        dress(&objects[i], kind);
         if (!add_object(scene, &objects[i]))
             return false;
-    struct scene_light lamp;
-    scene_light_init(&lamp, SCENE_LIGHT_POINT, "reading light");
-    lamp.intensity = 0.15f;
-    glm_vec3_copy((vec3){1.0f, 0.72f, 0.42f}, lamp.color);
-    return scene_add_light(scene, &lamp, (float[3]){0.02f, 0.3f, 0.16f}, (float[3]){0, -1, 0}) !=
-               SCENE_NONE &&
+    }
+    return (kind == KIND_EMISSIVE || add_reading_light(scene)) &&
            scene_add_camera(scene, "close", (float[3]){0.0f, 0.24f, 0.75f},
                             (float[3]){0.0f, 0.1f, -0.03f}, (float[3]){0, 1, 0},
                             0.55f) != SCENE_NONE;
+}
+
+bool builtin_build_cornell_objects(struct scene *scene)
+{
+    return build(scene, KIND_OWN);
+}
+
+bool builtin_build_cornell_objects_diffuse(struct scene *scene)
+{
+    return build(scene, KIND_DIFFUSE);
+}
+
+bool builtin_build_cornell_objects_glossy(struct scene *scene)
+{
+    return build(scene, KIND_GLOSSY);
+}
+
+bool builtin_build_cornell_objects_glass(struct scene *scene)
+{
+    return build(scene, KIND_GLASS);
+}
+
+bool builtin_build_cornell_objects_emissive(struct scene *scene)
+{
+    return build(scene, KIND_EMISSIVE);
 }

@@ -1,0 +1,177 @@
+// docs/accuracy.md from the results of accuracy runs.
+import { join } from 'node:path';
+import { writeFileSync } from 'node:fs';
+
+import { buysTable } from './accuracy_buys.mjs';
+import { worstWindows } from './accuracy_errors.mjs';
+import { cropped, readPng, resized, tiled, writePng } from './png.mjs';
+import { chartSvg } from './svg.mjs';
+
+const { FIRST_CHOICE, errorOf, frontOf, pointsOf, settingText, short } = globalThis.errorChart;
+
+const PRESETS = ['none', 'draft', 'interactive', 'high', 'final'];
+const OVERVIEW_WIDTH = 256; // of each of four pictures
+const WINDOW_WIDTH = 200;
+
+/** @typedef {{ scene: import('./accuracy_scenes.mjs').Scene, folder: string, results: any }} Run */
+
+const table = (head, rows) =>
+  [`| ${head.join(' | ')} |`, `|${head.map(() => '---').join('|')}|`, ...rows.map((row) => `| ${row.join(' | ')} |`)].join('\n');
+
+const rungOf = ({ results }, name) => results.rungs.find((rung) => rung.name === name);
+
+/** The rung whose errors are looked into: the best preset, or whatever is there that errs least. */
+function bestRung(run) {
+  const flip = (rung) => rung.converged?.metrics?.ldr_flip ?? Infinity;
+  return rungOf(run, 'final') ?? [...run.results.rungs].sort((a, b) => flip(a) - flip(b))[0];
+}
+
+/** A figure; "~" before it where the truth's own error is more than a tenth of its error. */
+function figure(results, part, metric, value) {
+  if (typeof value !== 'number') return '–';
+  const own = results.noise?.[part]?.[metric]?.reference;
+  const isSure = typeof own === 'number' && own <= 0.1 * errorOf(metric, value);
+  return `${isSure ? '' : '~'}${short(value)}`;
+}
+
+const energies = (results, part, values) =>
+  ['red', 'green', 'blue'].map((color) => figure(results, part, `energy_${color}`, values?.[`energy_${color}`])).join(' ');
+
+/** @param {Run} run @param {any} rung */
+function rungRow({ results }, rung, front) {
+  const { metrics, indirect } = rung.converged;
+  return [
+    `${front.has(rung) ? `**${rung.name}**` : rung.name}`,
+    short(rung.frame_ms.median),
+    `${short(rung.converged.ms)}${rung.converged.settled ? '' : ' (not settled)'}`,
+    short(rung.memory_bytes / 1048576),
+    figure(results, 'metrics', 'ldr_flip', metrics.ldr_flip),
+    figure(results, 'metrics', 'ssim', metrics.ssim),
+    figure(results, 'metrics', 'rel_mse', metrics.rel_mse),
+    energies(results, 'metrics', metrics),
+    energies(results, 'indirect', indirect),
+    front.has(rung) ? 'yes' : '',
+  ];
+}
+
+const ROW_HEAD = ['setting', 'ms a frame', 'ms to settle', 'MiB', 'LDR-FLIP', 'SSIM', 'relMSE', 'energy R G B', 'indirect energy R G B', 'front'];
+
+/** The presets and the front, and all the rest folded away. */
+function rungTables(run) {
+  const front = new Set(frontOf(pointsOf(run.results.rungs, FIRST_CHOICE)).map(({ rung }) => rung));
+  const sorted = [...run.results.rungs].sort((a, b) => a.frame_ms.median - b.frame_ms.median);
+  const isShown = (rung) => front.has(rung) || PRESETS.includes(rung.name);
+  const rows = (list) => table(ROW_HEAD, list.map((rung) => rungRow(run, rung, front)));
+  const parts = [rows(sorted.filter(isShown))];
+  const others = sorted.filter((rung) => !isShown(rung));
+  const meanings = sorted.map((rung) => `- \`${rung.name}\`: ${settingText(rung)}`).join('\n');
+  if (others.length > 0) parts.push(`<details><summary>${others.length} more</summary>\n\n${rows(others)}\n\n</details>`);
+  parts.push(`<details><summary>What the names mean</summary>\n\n${meanings}\n\n</details>`);
+  return parts.join('\n\n');
+}
+
+/** What is known of the truth's own error, and by which measures it is too much. */
+function noiseText({ results }) {
+  const { reference } = results.setup;
+  const total = typeof reference.noise === 'number' ? `${short(100 * reference.noise)} %` : 'not known';
+  const tooMuch = [
+    ['metrics', 'all light'],
+    ['indirect', 'indirect light'],
+  ].flatMap(([part, of]) => {
+    const titles = results.metrics.filter(({ name }) => results.noise?.[part]?.[name]?.enough === false).map(({ title }) => title);
+    return titles.length > 0 ? `${titles.join(', ')} of ${of}` : [];
+  });
+  const own = results.noise?.metrics?.ldr_flip;
+  const flip = own ? ` By LDR-FLIP it errs by ${short(own.reference)} itself, and the smallest error shown is ${short(own.smallest)}.` : '';
+  const verdict =
+    tooMuch.length === 0
+      ? 'By every measure that is less than a tenth of the smallest error.'
+      : `That is more than a tenth of the smallest error by these measures: ${tooMuch.join('; ')}. Figures with “~” are no surer.`;
+  return `Noise of the reference: ${total} (standard error of pixels over the mean).${flip} ${verdict}`;
+}
+
+/** Writes the pictures of a scene; returns the Markdown that shows them. */
+function scenePictures(run, folder) {
+  const { scene, results } = run;
+  const best = bestRung(run);
+  const cheap = rungOf(run, 'interactive') ?? best;
+  const read = (file) => readPng(join(run.folder, file));
+  const [truth, picture, map] = [read('reference.png'), read(best.pictures.converged), read(best.pictures.error)];
+  const small = [truth, read(cheap.pictures.converged), picture, map].map((one) => resized(one, OVERVIEW_WIDTH));
+  writePng(join(folder, `${scene.name}.png`), tiled([small.slice(0, 2), small.slice(2)]));
+  const windows = worstWindows(map);
+  const crops = windows.map((window) => [truth, picture, map].map((one) => resized(cropped(one, window), WINDOW_WIDTH)));
+  writePng(join(folder, `${scene.name}-errors.png`), tiled(crops));
+  writeFileSync(join(folder, `${scene.name}.svg`), chartSvg(results, FIRST_CHOICE));
+  const places = windows.map(({ x, y, width, height, error }) => `LDR-FLIP ${short(error)} around (${x + (width >> 1)}, ${y + (height >> 1)})`);
+  return [
+    `![Error against time of ${scene.title}](accuracy/${scene.name}.svg)`,
+    `![Truth, ${cheap.name}, ${best.name} and its errors](accuracy/${scene.name}.png)`,
+    `Above: the truth and \`${cheap.name}\`; below: \`${best.name}\` and where it errs (LDR-FLIP, black 0 to pale yellow 1).`,
+    `![The largest errors: truth, ${best.name}, error](accuracy/${scene.name}-errors.png)`,
+    `The largest errors of \`${best.name}\` (truth, picture, error), from the worst: ${places.join('; ')}.`,
+  ].join('\n\n');
+}
+
+function sceneSection(run, folder) {
+  const { scene, results } = run;
+  const { width, height } = results.setup.scene;
+  return [
+    `### ${scene.title}`,
+    `${scene.about} ${width} x ${height} pixels, ${results.rungs.length} settings.`,
+    scenePictures(run, folder),
+    noiseText(run),
+    rungTables(run),
+  ].join('\n\n');
+}
+
+/** Error of each preset in each scene. */
+function overview(runs) {
+  const rows = runs.map((run) => {
+    const flips = PRESETS.map((name) => figure(run.results, 'metrics', 'ldr_flip', rungOf(run, name)?.converged.metrics.ldr_flip));
+    const { metrics, indirect } = bestRung(run).converged;
+    const { noise } = run.results.setup.reference;
+    return [
+      run.scene.title,
+      ...flips,
+      figure(run.results, 'metrics', 'ssim', metrics.ssim),
+      energies(run.results, 'indirect', indirect),
+      typeof noise === 'number' ? `${short(100 * noise)} %` : '–',
+    ];
+  });
+  return table(['scene', ...PRESETS, 'SSIM of final', 'indirect energy of final', 'noise of the reference'], rows);
+}
+
+const INTRO = `<!-- Written by ./dev accuracy; the last chapter is kept in accuracy/causes.md. -->
+# Accuracy
+
+How far pictures are from the truth, and what less error costs. The truth is the reference path tracer's picture of
+the same scene, camera and size. Each setting is measured in a scene that has just been loaded: the median frame of
+a moving camera, the time until the picture has settled, and the error of the settled picture.
+
+**LDR-FLIP** is that of the displayed picture at one fixed exposure, 0 to 1: for scale, a picture uniformly 10 % too
+bright scores about 0.15, one 2 % too bright 0.05. **Energy** is the mean of a channel over the truth's: 1 is right.
+**Indirect** is without light of lamps and emitters that was reflected once. **Front**: no other setting is both
+faster and less wrong; its names are bold. **~** before a figure: the truth's own error, by the same measure, is more
+than a tenth of the error shown.`;
+
+/**
+ * Writes accuracy.md and its pictures.
+ * @param {{ runs: Run[], missing: import('./accuracy_scenes.mjs').Scene[], machine: string, causes: string, folder: string }} params
+ *   `folder`: that of the page; pictures go into its folder "accuracy"
+ */
+export function writePage({ runs, missing, machine, causes, folder }) {
+  const buys = buysTable(runs.map(({ results }) => results.rungs));
+  const parts = [INTRO, machine, '## All scenes', 'LDR-FLIP of each preset.', overview(runs)];
+  if (missing.length > 0) parts.push(`Not measured: ${missing.map(({ title }) => title).join(', ')}.`);
+  parts.push('## Scene by scene', ...runs.map((run) => sceneSection(run, join(folder, 'accuracy'))));
+  parts.push('## What each setting buys');
+  parts.push(
+    buys
+      ? 'Pairs of settings that differ in one step, over all scenes: the median change, and the least and the most. Less error is better; so is less time.'
+      : 'The ladder that was measured has no settings that differ in one step; the full one has.',
+  );
+  if (buys) parts.push(buys);
+  parts.push('## Where it is wrong and why', causes.trim());
+  writeFileSync(join(folder, 'accuracy.md'), `${parts.join('\n\n')}\n`);
+}

@@ -1,0 +1,120 @@
+// Proves that the accuracy tab and the daemon measure together: Chromium measures a small view of the Cornell box,
+// draws with what it found, lays truth and errors over the picture, and cancels a second measurement.
+import assert from 'node:assert/strict';
+import { after, before, describe, test } from 'node:test';
+
+import { difference, openScene, pixels } from './browser.mjs';
+
+const WIDTH = 96;
+const MEASURED_MS = 400000;
+
+describe('the tab of accuracy and the daemon', () => {
+  let client, page;
+
+  before(async () => {
+    client = await openScene('builtin:cornell');
+    ({ page } = client);
+    // The stage stays as it is; only the picture is small, so that the path tracer is soon done.
+    await page.evaluate(async (width) => {
+      const { connection, view } = globalThis.voxcast;
+      const height = Math.round((width * view.size.height) / view.size.width);
+      await connection.call('view.configure', { width, height });
+      await connection.call('settings.update', { set: { gi_method: 'clipmap', voxel_resolution: '64' } });
+    }, WIDTH);
+    await page.waitForFunction((width) => document.getElementById('picture').width === width, WIDTH);
+    await page.locator('#tab-accuracy').click();
+  });
+  after(async () => {
+    await client?.close();
+  });
+
+  const panel = () => page.locator('#panel-accuracy');
+  const button = (name) => panel().getByRole('button', { name, exact: true });
+  const setNoise = async (percent) => {
+    const noise = panel().locator('.lil-controller', { hasText: 'Noise' }).locator('input');
+    await noise.fill(String(percent));
+    await noise.press('Enter');
+  };
+  const untilText = (pattern, timeout = 30000) =>
+    page.waitForFunction((source) => new RegExp(source).test(document.getElementById('panel-accuracy').innerText), pattern.source, { timeout });
+  const point = (name) => page.locator(`.error-chart .point[data-rung=${name}]`);
+  const isLoaded = (index) =>
+    page.waitForFunction((at) => document.querySelectorAll('#comparison-pictures img')[at].naturalWidth > 0, index);
+  const untilDrawnWith = async (name) => {
+    await untilText(new RegExp(`Drawn with ${name}`));
+    await page.waitForFunction(
+      (wanted) => document.getElementById('stage').dataset.converged === 'true' && document.getElementById('badge').innerText.startsWith(wanted),
+      name,
+      { timeout: 60000 },
+    );
+  };
+
+  test('measures this view: the truth comes along, then points, and the live one is marked', { timeout: MEASURED_MS }, async () => {
+    await setNoise(8);
+    await button('Measure this view').click();
+    await untilText(/samples a pixel|Measured \d of 6 settings/);
+    await untilText(/Measured 6 of 6 settings\./, MEASURED_MS);
+    await page.waitForFunction(() => document.querySelectorAll('.error-chart .point').length === 6);
+    assert.equal(await page.locator('.error-chart .point.live').count(), 1);
+    assert.ok((await page.locator('.error-chart .front').getAttribute('d')).length > 10);
+    const setup = await page.evaluate(() => globalThis.voxcast.measurement.results.setup.scene);
+    assert.equal(setup.width, WIDTH);
+  });
+
+  test('a point shows its picture, and a click draws with it', async () => {
+    await point('none').hover();
+    await page.waitForFunction(() => document.querySelector('.error-tip img').naturalWidth > 0);
+    const before = await pixels(page);
+    await point('none').click();
+    await untilDrawnWith('none');
+    assert.ok(difference(before, await pixels(page)) > 2); // it lacks indirect light
+    await button('Back to own settings').click();
+    await untilText(/Drawn with your own settings/);
+  });
+
+  test('the budget for still pictures draws with the least error', { timeout: 120000 }, async () => {
+    await panel().locator('.budget input').focus();
+    await page.keyboard.press('End');
+    await untilText(/When time does not matter: .*LDR-FLIP/);
+    await page.waitForFunction(() => globalThis.voxcast.view.rung !== '');
+    const [drawn, errors] = await page.evaluate(() => {
+      const { measurement, view } = globalThis.voxcast;
+      const errorOf = (rung) => rung.converged.metrics.ldr_flip;
+      return [errorOf(measurement.rung(view.rung)), measurement.rungs.map(errorOf)];
+    });
+    assert.equal(drawn, Math.min(...errors));
+  });
+
+  test('truth and errors lie over the picture while the camera is the measured one', async () => {
+    await page.locator('input[value=split]').check();
+    await isLoaded(0);
+    assert.ok(await page.getByRole('slider', { name: 'Line between live picture and truth' }).isVisible());
+    await page.locator('input[value=error]').check();
+    await isLoaded(1);
+    assert.ok(await page.locator('.heat-legend').isVisible());
+    await page.evaluate(() => globalThis.voxcast.camera.orbit(0.3, 0));
+    const back = page.getByRole('button', { name: 'Back to the measured view' });
+    await back.click();
+    assert.ok(!(await back.isVisible()));
+    assert.ok(await page.locator('.heat-legend').isVisible());
+    await page.locator('input[value=none]').check();
+  });
+
+  test('a refusal of the daemon is told', async () => {
+    const message = await page.evaluate(() => globalThis.voxcast.view.chooseRung('nonesuch').catch((error) => error.message));
+    assert.match(message, /nonesuch.*live/);
+  });
+
+  test('cancelling ends a measurement at once', { timeout: 60000 }, async () => {
+    await setNoise(0.05);
+    await button('Measure this view').click();
+    await untilText(/samples a pixel/);
+    await button('Cancel').click();
+    await untilText(/Cancelled after 0 of 6 settings/);
+    assert.ok(await button('Measure this view').isEnabled());
+    assert.ok(!(await button('Cancel').isVisible()));
+    assert.equal(await page.evaluate(() => globalThis.voxcast.view.rung), '');
+  });
+
+  test('threw nothing', () => assert.deepEqual(client.problems, []));
+});

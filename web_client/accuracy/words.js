@@ -1,0 +1,20 @@
+/** @param {number | null | undefined} seconds */
+export function durationText(seconds) {
+  if (typeof seconds !== 'number' || !Number.isFinite(seconds)) return '';
+  if (seconds < 90) return `${Math.max(1, Math.round(seconds))} s`;
+  if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
+  return `${(seconds / 3600).toFixed(1)} h`;
+}
+
+/** Milliseconds with as many digits as count. @param {number} ms */
+export function msText(ms) {
+  if (ms >= 10000) return `${(ms / 1000).toFixed(0)} s`;
+  if (ms >= 1000) return `${(ms / 1000).toFixed(1)} s`;
+  return `${ms < 10 ? ms.toFixed(1) : ms.toFixed(0)} ms`;
+}
+
+/** Of a share: "3.1 %". @param {number} share */
+export const percentText = (share) => `${Number((100 * share).toPrecision(2))} %`;
+
+/** What people read for a rung. @param {string} name */
+export const rungTitle = (name) => (name === 'live' ? 'own settings as measured' : name);

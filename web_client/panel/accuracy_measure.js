@@ -1,0 +1,113 @@
+import { durationText, percentText } from '../accuracy/words.js';
+import { element } from '../ui/element.js';
+import { makeSection } from './sections.js';
+
+/** The server's range of the wanted noise, in percent. */
+const NOISE = { least: 0.05, most: 10, step: 0.05 };
+const LADDERS = { 'Quick: the presets': 'quick', 'Full: each setting': 'full' };
+
+/** The form that measures the view, and how far that is. */
+export class AccuracyMeasure {
+  /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
+  constructor(root, app) {
+    this.app = app;
+    this.choice = { ladder: 'quick', noise: 1 };
+    const gui = makeSection(root, 'Measurement');
+    const ladder = gui.add(this.choice, 'ladder', LADDERS).name('Settings');
+    ladder.domElement.title = 'Which settings are measured: a few presets, or all that differ in one thing.';
+    const noise = gui.add(this.choice, 'noise', NOISE.least, NOISE.most, NOISE.step).name('Noise of the truth (%)');
+    noise.domElement.title = 'The truth is traced until its pixels err by no more than this. Less takes longer: half the noise, four times the time.';
+    this.begin = element('button', { type: 'button', onclick: () => this.#start() }, 'Measure this view');
+    this.stop = element('button', { type: 'button', onclick: () => this.#cancel() }, 'Cancel');
+    this.text = element('p', { class: 'hint' });
+    this.bar = element('progress', { max: 1, 'aria-label': 'Progress of the measurement' });
+    // Screen readers hear the steps, not each half second.
+    this.step = element('p', { class: 'visually-hidden', role: 'status' });
+    root.append(element('div', { class: 'actions' }, this.begin, this.stop), this.bar, this.text, this.step);
+    for (const event of ['changed', 'begun']) app.measurement.addEventListener(event, () => this.refresh());
+    app.connection.addEventListener('state', () => this.refresh());
+    this.refresh();
+  }
+
+  refresh() {
+    const { measurement, connection } = this.app;
+    const { isRunning } = measurement;
+    this.begin.disabled = isRunning || !connection.isOpen;
+    this.stop.hidden = !isRunning;
+    this.bar.hidden = !isRunning;
+    this.#showBar(measurement.progress);
+    this.text.textContent = describeProgress(measurement.progress);
+    const step = describeStep(measurement.progress);
+    if (this.step.textContent !== step) this.step.textContent = step;
+  }
+
+  #showBar(/** @type {any} */ progress) {
+    const value = shareDone(progress);
+    if (value === null) this.bar.removeAttribute('value');
+    else this.bar.value = value;
+  }
+
+  async #start() {
+    this.begin.disabled = true;
+    const { ladder, noise } = this.choice;
+    try {
+      // The picture must not follow what is measured no longer.
+      if (this.app.view.rung) await this.app.view.chooseRung('');
+      await this.app.measurement.start({ ladder, noise: Number((noise / 100).toPrecision(6)) });
+    } catch (error) {
+      this.app.toasts.showError(/** @type {any} */ (error));
+    }
+    this.refresh();
+  }
+
+  #cancel() {
+    this.app.measurement.cancel().catch((error) => this.app.toasts.showError(error));
+  }
+}
+
+/** Of the present step; null if that is not known. Noise falls by the root of the samples. */
+function shareDone(/** @type {any} */ progress) {
+  if (progress?.state === 'rungs') return progress.rung_count ? progress.done / progress.rung_count : null;
+  if (progress?.state !== 'reference' || !(progress.noise > 0)) return null;
+  return Math.min((progress.noise_wanted / progress.noise) ** 2, 1);
+}
+
+const left = (/** @type {any} */ { seconds_left }) => {
+  const text = durationText(seconds_left);
+  return text && ` About ${text} left.`;
+};
+
+/** @param {import('../accuracy/measurement.js').Progress | null} progress */
+function describeProgress(progress) {
+  if (!progress)
+    return 'Traces the truth of what you see in the background, then draws it by each setting and tells how far that is from the truth, and what it costs.';
+  const count = `${progress.done ?? 0} of ${progress.rung_count ?? '?'} settings`;
+  switch (progress.state) {
+    case 'queued':
+      return 'Waits until another measurement has ended.';
+    case 'reference': {
+      const noise = progress.noise ? `noise ${percentText(progress.noise)}` : 'noise not known yet';
+      const wanted = progress.noise_wanted ? ` (wanted: ${percentText(progress.noise_wanted)})` : '';
+      return `Traces the truth: ${progress.samples ?? 0} samples a pixel, ${noise}${wanted}.${left(progress)}`;
+    }
+    case 'rungs':
+      return `Measured ${count}${progress.rung ? `; now ${progress.rung}` : ''}.${left(progress)}`;
+    case 'done':
+      return `Measured ${count}.`;
+    case 'cancelled':
+      return `Cancelled after ${count}${progress.done ? '; these stay.' : '.'}`;
+    default:
+      return `Failed: ${progress.message ?? 'the server did not say why'}`;
+  }
+}
+
+const STEPS = /** @type {Record<string, string>} */ ({
+  queued: 'The measurement waits.',
+  reference: 'The truth is being traced.',
+  rungs: 'The settings are being measured.',
+  done: 'The measurement is done.',
+  cancelled: 'The measurement was cancelled.',
+  failed: 'The measurement failed.',
+});
+
+const describeStep = (/** @type {any} */ progress) => (progress ? STEPS[progress.state] : '');
