@@ -7,7 +7,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "renderer/clock.h"
 #include "renderer/camera.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
@@ -61,6 +60,7 @@ struct renderer *renderer_create(const struct renderer_params *params, struct er
         free(renderer);
         return NULL;
     }
+    gpu_set_give_way(renderer->gpu, params->give_way, params->user);
     if (params->watch_shaders)
         gpu_programs_watch(renderer->gpu);
     gi_init(&renderer->gi, renderer->gpu);
@@ -311,14 +311,19 @@ static float view_convergence(const struct frame *frame)
     return fminf(0.9f + 0.1f * averaged, 1.0f);
 }
 
+bool renderer_may_draw(const struct renderer *renderer)
+{
+    return !renderer->may_draw || renderer->may_draw(renderer->user);
+}
+
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error)
 {
-    if (renderer->may_draw && !renderer->may_draw(renderer->user)) {
+    if (!renderer_may_draw(renderer)) {
         error_set(out_error, "no more frames are wanted");
         return RENDER_FAILED;
     }
-    double started_ms = clock_now_ms();
+    double started_ms = gpu_clock_ms(renderer->gpu);
     if (!params_are_valid(params, out_error))
         return RENDER_FAILED;
     if (!renderer->resident) {
@@ -431,7 +436,7 @@ bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wa
     collect_light(renderer, view, slot, bytes + size_bytes + VIEW_EXPOSURE_BYTES);
     for (int i = 0; i < (shape.output == FRAME_OUTPUT_YCBCR ? 3 : 1); i++)
         slot->result.planes[i] = bytes + offsets[i];
-    slot->result.frame_time_ms = clock_now_ms() - slot->started_ms;
+    slot->result.frame_time_ms = gpu_clock_ms(renderer->gpu) - slot->started_ms;
     view->last_frame_ms = slot->result.frame_time_ms;
     view->collected = true;
     *out_pixels = slot->result;

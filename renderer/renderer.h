@@ -34,9 +34,10 @@ struct renderer_params {
     const char *gpu;        // "auto" (or NULL), "software", or a device index such as "0"
     const char *shader_dir; // NULL: VOXCAST_SHADER_DIR, the installed folder, or the source tree
     bool watch_shaders;     // reload shaders when their files change
-    // Called before each frame, whose time it is not part of: may wait until others have drawn.
-    // False refuses the frame. NULL: nobody is asked.
-    bool (*may_draw)(void *user);
+    // Both may wait until others have drawn, and that time is no part of any that is measured;
+    // NULL: nobody is asked.
+    bool (*may_draw)(void *user); // before each frame; false refuses it
+    void (*give_way)(void *user); // before each piece of work of a CPU driver, within frames
     void *user;
 };
 
@@ -99,6 +100,9 @@ enum render_result {
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error);
 
+// What renderer_params.may_draw says now; true without it.
+bool renderer_may_draw(const struct renderer *renderer);
+
 // Makes the next renderer_view_draw() draw everything anew even if nothing has changed.
 void renderer_view_invalidate(struct view *view);
 
@@ -114,7 +118,8 @@ struct frame_pixels {
     uint32_t reference_samples; // per pixel, if the picture is a reference's; else 0
     float reference_noise;      // standard error of a pixel over the mean luminance; 0: unknown
     float convergence;    // 0 to 1: how far indirect light and averaging have come; 1 is final
-    double frame_time_ms; // wall time from the call of renderer_view_draw to the pixels being here
+    double frame_time_ms; // wall time from the call of renderer_view_draw to the pixels being here,
+                          // but for that of renderer_params.give_way
 };
 
 // The oldest finished frame, or false if none is ready (with `wait`: if none is under way). The

@@ -326,6 +326,9 @@ static bool measure(struct rung_work *work, struct error *out_error)
     bool done = draw_pictures(work, out_error) && draw_direct(work, out_error) &&
                 measure_edits(work, out_error);
     renderer_view_destroy(accuracy->shot.renderer, &work->view);
+    // An edit that was cut short looks like one that cannot be measured.
+    done = done && (renderer_may_draw(accuracy->shot.renderer) ||
+                    error_set(out_error, "stopped while rung %s was measured", work->rung->name));
     return done && judge_picture(work, "cold", &work->cold, out_error) &&
            judge_picture(work, "converged", &work->converged, out_error) &&
            write_pictures(work, out_error);

@@ -112,6 +112,16 @@ static bool may_draw(void *user)
     return may;
 }
 
+// The same within a frame, which is drawn to its end.
+static void give_way(void *user)
+{
+    struct accuracy_service *service = user;
+    pthread_mutex_lock(&service->mutex);
+    while (!service->idle && !service->stop)
+        pthread_cond_wait(&service->changed, &service->mutex);
+    pthread_mutex_unlock(&service->mutex);
+}
+
 static bool tell(void *user, const struct accuracy_progress *progress)
 {
     struct accuracy_service *service = user;
@@ -139,6 +149,7 @@ static bool open_renderer(struct accuracy_service *service, struct accuracy_sess
     if (!service->renderer)
         service->renderer = renderer_create(&(struct renderer_params){.gpu = service->params.gpu,
                                                                       .may_draw = may_draw,
+                                                                      .give_way = give_way,
                                                                       .user = service},
                                             out_error);
     return service->renderer && renderer_set_scene(service->renderer, session->scene, out_error);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/clock.h"
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/internal.h"
 #include "renderer/gpu/program.h"
@@ -216,11 +217,32 @@ static void use_program(struct gpu *gpu, const struct gpu_program *program)
     gpu->current_program = name;
 }
 
+void gpu_set_give_way(struct gpu *gpu, void (*give_way)(void *user), void *user)
+{
+    gpu->give_way = gpu->info.software ? give_way : NULL;
+    gpu->give_way_user = user;
+}
+
+double gpu_clock_ms(const struct gpu *gpu)
+{
+    return clock_now_ms() - gpu->waited_ms;
+}
+
+static void give_way(struct gpu *gpu)
+{
+    if (!gpu->give_way)
+        return;
+    double from_ms = clock_now_ms();
+    gpu->give_way(gpu->give_way_user);
+    gpu->waited_ms += clock_now_ms() - from_ms;
+}
+
 void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x, uint32_t y,
                   uint32_t z)
 {
     if (x == 0 || y == 0 || z == 0)
         return;
+    give_way(gpu);
     use_program(gpu, program);
     glDispatchCompute(x, y, z);
 }
@@ -228,6 +250,7 @@ void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x
 void gpu_dispatch_indirect(struct gpu *gpu, const struct gpu_program *program,
                            const struct gpu_buffer *arguments, size_t offset_bytes)
 {
+    give_way(gpu);
     use_program(gpu, program);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu_buffer_name(arguments));
     glDispatchComputeIndirect((GLintptr)offset_bytes);
@@ -243,6 +266,7 @@ void gpu_draw_indirect(struct gpu *gpu, const struct gpu_draw_params *params)
 {
     if (params->count == 0)
         return;
+    give_way(gpu);
     use_program(gpu, params->program);
     GLuint vertex_array = *(const GLuint *)params->geometry;
     glVertexArrayVertexBuffer(vertex_array, 1, gpu_buffer_name(params->records), 0,

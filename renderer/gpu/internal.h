@@ -28,6 +28,9 @@ struct gpu {
     struct gpu_allocation *allocations;
     struct gpu_program_library *programs;
     uint32_t current_program;
+    void (*give_way)(void *user); // NULL for none
+    void *give_way_user;
+    double waited_ms; // in it, so far
 };
 
 void gpu_account(struct gpu *gpu, struct gpu_allocation *allocation, const char *label,

@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "renderer/clock.h"
 #include "renderer/gpu/internal.h"
 
 #define FRAMES_IN_FLIGHT 4
@@ -52,7 +51,7 @@ void gpu_timer_begin(struct gpu_timer *timer, uint32_t slot)
     if (timer->gpu->info.gpu_timers)
         glQueryCounter(timer->queries[timer->frame][slot][0], GL_TIMESTAMP);
     else
-        timer->started_ms[slot] = clock_now_ms();
+        timer->started_ms[slot] = gpu_clock_ms(timer->gpu);
 }
 
 void gpu_timer_end(struct gpu_timer *timer, uint32_t slot)
@@ -66,7 +65,7 @@ void gpu_timer_end(struct gpu_timer *timer, uint32_t slot)
     // Rasterisation is queued even on a CPU driver: finish it, so that each pass shows its own
     // time. The work has to be done anyway before the frame can be read.
     glFinish();
-    timer->time_ms[slot] = clock_now_ms() - timer->started_ms[slot];
+    timer->time_ms[slot] = gpu_clock_ms(timer->gpu) - timer->started_ms[slot];
 }
 
 void gpu_timer_poll(struct gpu_timer *timer)
