@@ -141,8 +141,10 @@ static const struct parameter parameters[] = {
           "Cones that gather light above a surface; auto is by quality."),
     FLOAT_(GROUP_SETTINGS, "cone_step", 0, 2, 0.05, "diameters", "0",
            "Length of a cone's steps, 0.25 or more; 0 is by quality."),
-    ENUM_(GROUP_SETTINGS, "gather_mode", 0, "\"auto\"", NAMES("auto", "cache", "half", "pixel", "rays"),
-          "Where cones start: at voxels, at every other pixel, at every pixel."),
+    ENUM_(GROUP_SETTINGS, "gather_mode", 0, "\"auto\"",
+          NAMES("auto", "cache", "half", "pixel", "rays"),
+          "Where cones start: at voxels, at every other pixel, at every pixel; or rays at pixels, "
+          "which come in once the picture rests. Auto is by quality."),
     INT_(GROUP_SETTINGS, "bounces", 0, 16, "", "0", "Of indirect light; 0 is unlimited."),
     FLOAT_(GROUP_SETTINGS, "indirect_intensity", 0, 100, 0.05, "", "1",
            "Indirect light is multiplied by this; 1 is physical."),

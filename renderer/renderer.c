@@ -346,6 +346,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .view = view,
         .params = params,
         .quality = &quality_levels[params->quality],
+        .unchanged = same,
         .visibility_changed =
             !same_scene || view->surfaces_stale || !same_surfaces(view, params, &revisions),
     };

@@ -334,6 +334,10 @@ static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
     view->still_count += frame->gather_now;
     frame->still_count = view->still_count;
     block->settle[1] = (float)view->still_count;
+    // What rays have found is shown each time that their number has doubled, and with the last.
+    bool doubled = (frame->still_count & (frame->still_count - 1)) == 0;
+    frame->quiet = frame->gather == GATHER_RAYS && frame->gather_now && frame->unchanged &&
+                   !doubled && frame->still_count < frame->still_frames;
 }
 
 // Whether pixels read the cache rather than gather the last bounce themselves.

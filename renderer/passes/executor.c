@@ -48,8 +48,9 @@ bool passes_execute(struct frame *frame, struct error *out_error)
         const struct pass *pass = all_passes[i];
         const char *reason = frame->reference_picture && !pass->shows_reference
                                  ? "the reference's picture is shown"
-                             : pass->skip_reason ? pass->skip_reason(frame)
-                                                 : NULL;
+                             : frame->quiet && !pass->gathers ? "rays are added to those of before"
+                             : pass->skip_reason              ? pass->skip_reason(frame)
+                                                              : NULL;
         view->pass_skip_reasons[i] = reason;
         if (reason)
             continue;
@@ -111,8 +112,7 @@ const struct gpu_program *hit_program(const struct frame *frame, const char *sha
 
 bool filter_gathered(const struct frame *frame, bool gloss, struct error *out_error)
 {
-    bool doubled = (frame->still_count & (frame->still_count - 1)) == 0;
-    if (!doubled && frame->still_count < frame->still_frames)
+    if (frame->quiet)
         return true;
     char extra[48];
     uint32_t step = gi_gather_step(frame), pixels = step * GROUP_EDGE;

@@ -53,6 +53,8 @@ static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
         !(rays ? gather_by_rays(frame, out_error)
                : gather_at_pixels(frame, pass, extra, out_error)))
         return false;
+    if (frame->quiet)
+        return true;
     const struct gpu_program *program =
         voxel_program(frame, pass, "gi/indirect_diffuse.comp", extra, out_error);
     if (!program)
@@ -68,6 +70,7 @@ const struct pass indirect_diffuse_pass = {
     .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                     EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) |
                     EFFECT_BIT(EFFECT_INDIRECT_SPECULAR),
+    .gathers = true,
     .use_count = 5,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

@@ -21,6 +21,7 @@ static bool gather_by_rays(const struct frame *frame, struct error *out_error)
     const struct gpu_program *program = hit_program(frame, "gi/ray_gloss.comp", out_error);
     if (!program)
         return false;
+    gpu_bind_storage(frame->gpu, BIND_TILES, frame->view->glossy_tiles);
     gpu_dispatch_indirect(frame->gpu, program, frame->view->glossy_tiles, 0);
     gpu_barrier(frame->gpu);
     return filter_gathered(frame, true, out_error);
@@ -30,6 +31,8 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
                                   struct error *out_error)
 {
     struct view *view = frame->view;
+    if (frame->quiet) // the tiles are those of before
+        return gather_by_rays(frame, out_error);
     const struct gpu_program *list =
         voxel_program(frame, pass, "gi/glossy_tiles.comp", "", out_error);
     bool rays = frame->gather == GATHER_RAYS;
@@ -57,6 +60,7 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
 const struct pass indirect_specular_pass = {
     .name = "indirect_specular",
     .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT),
+    .gathers = true,
     .use_count = 4,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

@@ -53,6 +53,8 @@ struct frame {
     struct voxel_light_work light_work;
     enum gather_mode gather;
     bool gather_now;                // pixels' cones are due; else what they found is still good
+    bool unchanged;                 // parameters and document are those of the frame before
+    bool quiet;                     // only adds rays to those of before: the picture stays
     uint32_t still_frames;          // pictures to average
     uint32_t still_count;           // this one and those before it
     const float *reference_picture; // 4 floats a pixel, shown instead; NULL for none
@@ -91,6 +93,7 @@ struct pass {
     const char *(*skip_reason)(const struct frame *frame);
 
     bool shows_reference; // runs where a reference's picture is shown, too
+    bool gathers;         // runs in quiet frames, too
 
     // Binds, dispatches, returns; allocates nothing. False with a message if a shader fails.
     bool (*run)(struct frame *frame, const struct pass *pass, struct error *out_error);
@@ -126,8 +129,8 @@ const struct gpu_program *voxel_program(const struct frame *frame, const struct 
 const struct gpu_program *hit_program(const struct frame *frame, const char *shader,
                                       struct error *out_error);
 
-// Averages over neighbours what rays from pixels have found, irradiance or what lobes mirror; each
-// time that the number of rays has doubled, and with the last.
+// Averages over neighbours what rays from pixels have found, irradiance or what lobes mirror; not
+// in quiet frames.
 bool filter_gathered(const struct frame *frame, bool gloss, struct error *out_error);
 
 // Works out which cascades of the sun must be drawn; before the passes run.

@@ -149,8 +149,8 @@ bool resident_upload_lights(struct resident *resident);
 bool resident_upload_environment(struct resident *resident);
 void resident_count_materials(struct resident *resident);
 
-// Makes resident->tree that of the geometry as it is now; cheap where it is already. False when memory
-// ends.
+// Makes resident->tree that of the geometry as it is now; cheap where it is already. False when
+// memory ends.
 bool resident_need_tree(struct resident *resident);
 
 // Which space a texture slot reads from.

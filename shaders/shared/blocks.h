@@ -24,7 +24,8 @@ struct frame_block {
     vec4 textures;    // most samples of an anisotropic look-up, near plane of lamps' shadow views,
                       // 1 if samplers read one level only and want dithering, roughness beyond
                       // which no surface has a reflection of its own
-    vec4 tree; // world: where places in the tree of triangles count from; w: least offset of rays, m
+    vec4
+        tree; // world: where places in the tree of triangles count from; w: least offset of rays, m
     // From (u, v, depth) in the sun's view of the scene to each cascade, smallest first.
     vec4 cascade_scales[MAX_CASCADES]; // w: layer of the shadow map
     vec4 cascade_offsets[MAX_CASCADES];
