@@ -77,7 +77,7 @@ void main()
     if (dot(direction, s.geometric_normal) > 0.0 && dot(direction, s.normal) > 0.0) {
         float share = reflected_share(s, dot(view, facet), view.z, dot(direction, s.normal), alpha);
         ray_light found = light_along(tree_origin(s.position, s.geometric_normal),
-                                      normalize(direction), u.z, spread, vec2(pixel));
+                                      normalize(direction), u.z, spread, s.roughness, vec2(pixel));
         sum += share * vec4(found.radiance, 1.0);
     }
     gathered[at] = sum;
