@@ -21,11 +21,8 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 vec3 sample_visible_normal(vec3 view, float alpha, vec2 u)
 {
     vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
-    mat3 axes = frame_about(stretched);
-    float radius = sqrt(u.x);
-    vec2 t = radius * vec2(cos(2.0 * PI * u.y), sin(2.0 * PI * u.y));
-    // frame_about() turns about Z as it likes; the halves of the disk are told by the normal's side.
-    vec3 across = safe_normalize(vec3(-stretched.y, stretched.x, 0.0), axes[0]);
+    vec2 t = sqrt(u.x) * vec2(cos(2.0 * PI * u.y), sin(2.0 * PI * u.y));
+    vec3 across = safe_normalize(vec3(-stretched.y, stretched.x, 0.0), vec3(1.0, 0.0, 0.0));
     vec3 along = cross(stretched, across);
     float s = 0.5 * (1.0 + stretched.z);
     t.y = mix(sqrt(max(1.0 - t.x * t.x, 0.0)), t.y, s);

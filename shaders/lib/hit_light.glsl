@@ -61,7 +61,7 @@ vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float s
 #endif
 #if FEEDBACK
     vec3 light = cached_irradiance(s.position, s.geometric_normal).rgb;
-    sum += whole_reflectance(s) * light * (voxels.anchor.w * voxels.light.y);
+    sum += whole_reflectance(s) * light * voxels.anchor.w;
 #endif
     return sum;
 }
