@@ -68,6 +68,8 @@ struct view {
 
     struct gpu_buffer *gathered; // irradiance that pixels have gathered, summed over still frames
     uint32_t still_count;        // pictures in that sum
+    uint64_t shown_light;        // version of the light in voxels that the newest picture shows
+    uint32_t quiet_count;        // frames since then
     uint64_t gathered_key;       // of the light and the cones that they saw
     struct gpu_buffer
         *glossy_tiles; // arguments and numbers of tiles that reflections are traced in

@@ -84,7 +84,8 @@ static void add_varied(struct ladder *ladder, enum gi_method method)
                                                 {"bounces", "1"},
                                                 {"bounces", "2"},
                                                 {"bounces", "4"},
-                                                {"voxel_directions", "isotropic"}};
+                                                {"voxel_directions", "isotropic"},
+                                                {"gather_mode", "rays"}};
     static const char *const levels[] = {"1", "2", "4", "6"};
     static const double scales[] = {0.5, 2.0};
     const char *name = gi_method_names[method];

@@ -29,7 +29,7 @@ static const char usage[] =
     "What is there already of the same set-up is kept: a run that was stopped goes on.\n"
     "\n"
     "  --out DIR            made if it is not there\n"
-    "  --ladder NAME|FILE   quick (no indirect light, and the presets), full (50 rungs), or a "
+    "  --ladder NAME|FILE   quick (no indirect light, and the presets), full (52 rungs), or a "
     "file:\n"
     "                       [{\"name\", \"preset\", \"scale\", \"set\": {\"cone_set\": \"9\", "
     "...}}, ...]\n"

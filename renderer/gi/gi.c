@@ -19,6 +19,7 @@
 #define CONE_PICTURES 4u
 // The same of rays, one each.
 #define RAY_PICTURES 64u
+#define QUIET_FRAMES 7u
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
@@ -305,6 +306,17 @@ uint32_t gi_gather_step(const struct frame *frame)
     return mode == GATHER_HALF || (mode == GATHER_RAYS && supersampled) ? 2 : 1;
 }
 
+// While light settles for pictures that are dear to draw, a few frames only do that.
+static void settle_quietly(struct frame *frame, const struct voxel_volume *volume)
+{
+    struct view *view = frame->view;
+    bool shown = frame->unchanged && !frame->light_work.voxelize &&
+                 view->shown_light == volume->light.version && view->quiet_count < QUIET_FRAMES;
+    frame->quiet = shown && gi_gather_mode(frame) == GATHER_RAYS;
+    view->quiet_count = frame->quiet ? view->quiet_count + 1 : 0;
+    view->shown_light = volume->light.version;
+}
+
 // Pixels gather once the light has settled; until then they show the cache. While nothing moves
 // their pictures are averaged.
 static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
@@ -322,6 +334,7 @@ static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
         frame->gather = GATHER_CACHE;
         frame->still_count = 0;
         view->still_count = 0;
+        settle_quietly(frame, volume);
         return;
     }
     uint64_t key = hash_vector(volume->light.version, block->pixel_march);

@@ -46,11 +46,11 @@ bool passes_execute(struct frame *frame, struct error *out_error)
     gpu_timer_begin_frame(view->timer);
     for (uint32_t i = 0; i < PASS_COUNT; i++) {
         const struct pass *pass = all_passes[i];
-        const char *reason = frame->reference_picture && !pass->shows_reference
-                                 ? "the reference's picture is shown"
-                             : frame->quiet && !pass->gathers ? "rays are added to those of before"
-                             : pass->skip_reason              ? pass->skip_reason(frame)
-                                                              : NULL;
+        const char *reason =
+            frame->reference_picture && !pass->shows_reference ? "the reference's picture is shown"
+            : frame->quiet && !pass->gathers ? "light settles; the picture is that of before"
+            : pass->skip_reason              ? pass->skip_reason(frame)
+                                             : NULL;
         view->pass_skip_reasons[i] = reason;
         if (reason)
             continue;

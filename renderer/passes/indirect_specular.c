@@ -32,7 +32,7 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
 {
     struct view *view = frame->view;
     if (frame->quiet) // the tiles are those of before
-        return gather_by_rays(frame, out_error);
+        return !frame->gather_now || gather_by_rays(frame, out_error);
     const struct gpu_program *list =
         voxel_program(frame, pass, "gi/glossy_tiles.comp", "", out_error);
     bool rays = frame->gather == GATHER_RAYS;

@@ -59,6 +59,7 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
 const struct pass irradiance_cache_pass = {
     .name = "irradiance_cache",
     .effects_used = EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS),
+    .gathers = true,
     .use_count = 4,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_VOXELS, ACCESS_READ},

@@ -54,7 +54,7 @@ struct frame {
     enum gather_mode gather;
     bool gather_now;                // pixels' cones are due; else what they found is still good
     bool unchanged;                 // parameters and document are those of the frame before
-    bool quiet;                     // only adds rays to those of before: the picture stays
+    bool quiet;                     // adds light or rays to those of before: the picture stays
     uint32_t still_frames;          // pictures to average
     uint32_t still_count;           // this one and those before it
     const float *reference_picture; // 4 floats a pixel, shown instead; NULL for none

@@ -39,6 +39,7 @@ const struct pass voxel_relight_pass = {
                     EFFECT_BIT(EFFECT_CUBE_SHADOWS) | EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) |
                     EFFECT_BIT(EFFECT_AREA_LIGHTS) | EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) |
                     EFFECT_BIT(EFFECT_VOXEL_COLORS),
+    .gathers = true,
     .use_count = 4,
     .uses = {{RESOURCE_VOXELS, ACCESS_READ},
              {RESOURCE_SHADOW_MAP, ACCESS_READ},

@@ -130,6 +130,7 @@ static bool voxelize_run(struct frame *frame, const struct pass *pass, struct er
 const struct pass voxelize_pass = {
     .name = "voxelize",
     .effects_used = SURFACE_EFFECTS | EFFECT_BIT(EFFECT_VOXEL_COLORS),
+    .gathers = true,
     .use_count = 1,
     .uses = {{RESOURCE_VOXELS, ACCESS_WRITE}},
     .skip_reason = voxelize_skip_reason,

@@ -10,6 +10,8 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 // Angle in radians that textures are averaged over where rays meet them.
 const float RAY_SPREAD = 0.03;
+// Roughness of a lobe about as wide as a hemisphere's rays stand for.
+const float RAY_ROUGHNESS = 0.6;
 
 void main()
 {
@@ -27,7 +29,7 @@ void main()
     // A normal map can turn a ray into the surface.
     if (dot(direction, s.geometric_normal) > 0.0) {
         ray_light found = light_along(tree_origin(s.position, s.geometric_normal), direction, u.z,
-                                      vec2(0.0, RAY_SPREAD), vec2(place));
+                                      vec2(0.0, RAY_SPREAD), RAY_ROUGHNESS, vec2(place));
         light = vec4(found.radiance / voxels.anchor.w, min(found.distance_m / voxels.light.x, 1.0));
     }
     uint at = gathered_at(GATHERED_LIGHT, place);

@@ -48,12 +48,14 @@ void main()
     uint tile = tiles[gl_WorkGroupID.x];
     uvec2 first = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE +
                   gl_LocalInvocationID.xy * uint(GATHER_STEP);
-    // The first pixel of the square whose gloss wants rays stands for all.
+    // Pixels of the square whose gloss wants rays have them in turns.
+    uint picture = uint(voxels.settle.y) - 1u;
     bool wanted = false;
     uvec2 pixel = first;
     surface s;
     for (uint i = 0u; i < uint(GATHER_STEP * GATHER_STEP) && !wanted; i++) {
-        pixel = first + uvec2(i % uint(GATHER_STEP), i / uint(GATHER_STEP));
+        uint turn = (i + picture) % uint(GATHER_STEP * GATHER_STEP);
+        pixel = first + uvec2(turn % uint(GATHER_STEP), turn / uint(GATHER_STEP));
         if (any(greaterThanEqual(pixel, frame.size.xy)))
             continue;
         s = gbuffer_load(pixel);
@@ -63,7 +65,6 @@ void main()
         return;
     uvec2 place = first / uint(GATHER_STEP);
     uint at = gathered_at(GATHERED_GLOSS, place);
-    uint picture = uint(voxels.settle.y) - 1u;
     vec4 sum = picture == 0u ? vec4(0.0) : gathered[at];
     float alpha = alpha_of(s);
     mat3 axes = frame_about(s.normal);
@@ -77,7 +78,7 @@ void main()
     if (dot(direction, s.geometric_normal) > 0.0 && dot(direction, s.normal) > 0.0) {
         float share = reflected_share(s, dot(view, facet), view.z, dot(direction, s.normal), alpha);
         ray_light found = light_along(tree_origin(s.position, s.geometric_normal),
-                                      normalize(direction), u.z, spread, vec2(pixel));
+                                      normalize(direction), u.z, spread, s.roughness, vec2(pixel));
         sum += share * vec4(found.radiance, 1.0);
     }
     gathered[at] = sum;

@@ -41,7 +41,8 @@ vec3 whole_reflectance(surface s)
 
 // What a surface sends back along the ray that met it. `spread` is the distance in m between rays of
 // neighbouring pixels there, over that to the hit.
-vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float spread, vec2 pixel)
+vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float spread,
+                  float least_roughness, vec2 pixel)
 {
     uint at = hit.triangle * TREE_TRIANGLE_TEXELS;
     uint id = tree_triangle_texel(at).w;
@@ -49,6 +50,9 @@ vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float s
     layer through;
     surface s = load_surface(id, sight(origin + frame.tree.xyz, direction, axes[0] * spread,
                                        axes[1] * spread, pixel), through);
+    // Highlights of smooth surfaces are met too seldom by rays that spread: their lobes are widened to
+    // the ray's own (Kaplanyan and Dachsbacher 2013, "Path Space Regularization").
+    s.roughness = max(s.roughness, least_roughness);
     vec3 sum = (flags & TREE_LIT_DIRECTLY) != 0u ? vec3(0.0) : s.emission;
     if (s.shading >= SHADE_UNLIT) // a drawing, not a source of light
         return vec3(0.0);
@@ -63,8 +67,10 @@ vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float s
 }
 
 // `origin` is relative to frame.tree, `direction` unit, `chance` uniform in [0, 1). `spread`: distance
-// in m between rays of neighbouring pixels where they start, and how much that grows per m.
-ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, vec2 pixel)
+// in m between rays of neighbouring pixels where they start, and how much that grows per m. `roughness`
+// is of the lobe that the ray is from.
+ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, float roughness,
+                      vec2 pixel)
 {
     tree_hit hit = find_nearest(origin, direction, 1e30, chance);
     ray_light found;
@@ -79,7 +85,8 @@ ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, ve
             return found;
 #if LIT_HITS
         found.radiance = hit_radiance(hit, edge_c.w, origin, direction,
-                                      spread.x / max(hit.distance, 1e-6) + spread.y, pixel);
+                                      spread.x / max(hit.distance, 1e-6) + spread.y,
+                                      roughness, pixel);
 #else
         vec3 world = origin + frame.tree.xyz + hit.distance * direction;
         found.radiance = voxel_light_at(world, direction) * voxels.anchor.w;
@@ -87,7 +94,7 @@ ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, ve
     }
 #if ENVIRONMENT_LIGHT
     else
-        found.radiance = environment_specular(direction, min(0.5 * spread.y, 0.5));
+        found.radiance = environment_specular(direction, 0.5 * roughness);
 #endif
     return found;
 }

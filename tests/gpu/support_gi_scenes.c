@@ -222,6 +222,30 @@ struct scene *gi_metal_floor_scene(void)
     return scene;
 }
 
+struct scene *gi_table_scene(void)
+{
+    struct scene *scene = create("table");
+    const float low[3] = {-1.5f, 0.0f, -1.5f}, high[3] = {1.5f, 2.2f, 1.5f};
+    struct mesh_builder builder;
+    mesh_builder_init(&builder);
+    add_inside(&builder, low, high, BOX_TOP | BOX_RIGHT | BOX_FRONT | BOX_BOTTOM, 1);
+    add_object(scene, &builder, add_matte(scene, GRAY(0.6f), 0.0f), 0.0f);
+    add_inside(&builder, low, high, BOX_LEFT, 1);
+    add_object(scene, &builder, add_matte(scene, (const float[3]){0.65f, 0.12f, 0.1f}, 0.0f), 0.0f);
+    uint32_t mirror = add_matte(scene, (const float[3]){0.9f, 0.9f, 0.85f}, 0.0f);
+    scene->materials[mirror].metallic = 1.0f;
+    scene->materials[mirror].roughness = 0.02f;
+    add_inside(&builder, low, high, BOX_BACK, 1);
+    add_object(scene, &builder, mirror, 0.0f);
+    mesh_builder_add_box(&builder, (const float[3]){-0.7f, 0.14f, -0.9f},
+                         (const float[3]){0.5f, 0.18f, 0.1f}, BOX_ALL);
+    add_object(scene, &builder, add_matte(scene, (const float[3]){0.2f, 0.35f, 0.7f}, 0.0f), 0.0f);
+    add_lamp(scene, (const float[3]){0.6f, 1.9f, 0.4f}, 10.0f);
+    add_camera(scene, (const float[3]){0.5f, 0.7f, 1.4f}, (const float[3]){-0.1f, 0.3f, -0.5f},
+               1.0f);
+    return scene;
+}
+
 static void rooms_wall(const struct gi_rooms_params *params, float out_low[3], float out_high[3])
 {
     float e = GI_ROOMS_HALF_EXTENT_M;

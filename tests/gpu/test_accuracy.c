@@ -68,7 +68,7 @@ static void test_named_ladders(void **state)
     assert_int_equal(ladder->rung_count, 1 + QUALITY_COUNT);
     if (!ladder_load("full", ladder, &error))
         fail_msg("%s", error.message);
-    assert_int_equal(ladder->rung_count, 50);
+    assert_int_equal(ladder->rung_count, 52);
     for (uint32_t i = 0; i < ladder->rung_count; i++)
         for (uint32_t k = 0; k < i; k++)
             assert_string_not_equal(ladder->rungs[i].name, ladder->rungs[k].name);

@@ -1,0 +1,100 @@
+// Proves that pictures gathered by rays show what lies between voxels: light under a low table, and
+// a room in a mirror, against the reference path tracer, where those gathered from voxels do not.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support_gi.h"
+#include "support_gi_scenes.h"
+
+#define PICTURE_EDGE 96u
+#define SAMPLES      512u
+#define BLOCK_EDGE   4u
+
+// Root mean square of the differences over the mean of indirect light, by blocks.
+#define RAYS_MOST 0.10
+// Those by voxels err so many times as much, at least.
+#define VOXELS_LEAST 1.4
+
+static void draw_indirect(struct scene *scene, enum gather_mode gather,
+                          const struct test_picture *none, struct test_picture *out_picture)
+{
+    struct frame_params params = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_CLIPMAP);
+    params.quality = QUALITY_FINAL;
+    params.settings.gather_mode = gather;
+    gi_scene_camera(scene, &params.camera);
+    *out_picture = gi_draw(scene, &params);
+    for (size_t i = 0; i < (size_t)PICTURE_EDGE * PICTURE_EDGE * 4; i++)
+        out_picture->pixels[i] -= none->pixels[i];
+}
+
+static double block_sum(const float *pixels, uint32_t block, uint32_t channel)
+{
+    const uint32_t blocks = PICTURE_EDGE / BLOCK_EDGE;
+    uint32_t left = block % blocks * BLOCK_EDGE, top = block / blocks * BLOCK_EDGE;
+    double sum = 0.0;
+    for (uint32_t i = 0; i < BLOCK_EDGE * BLOCK_EDGE; i++) {
+        size_t x = left + i % BLOCK_EDGE, y = top + i / BLOCK_EDGE;
+        sum += (double)pixels[(y * PICTURE_EDGE + x) * 4 + channel];
+    }
+    return sum;
+}
+
+static double relative_error(const float *a, const float *b)
+{
+    const uint32_t blocks = PICTURE_EDGE / BLOCK_EDGE;
+    double squared = 0.0, sum = 0.0;
+    for (uint32_t i = 0; i < blocks * blocks * 3; i++) {
+        double expected = block_sum(b, i / 3, i % 3);
+        squared += pow(block_sum(a, i / 3, i % 3) - expected, 2.0);
+        sum += expected;
+    }
+    return sqrt(squared * blocks * blocks * 3.0) / sum;
+}
+
+static void test_rays_find_what_voxels_do_not(void **state)
+{
+    (void)state;
+    struct scene *scene = gi_table_scene();
+    struct frame_params params = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_NONE);
+    params.quality = QUALITY_FINAL;
+    gi_scene_camera(scene, &params.camera);
+    struct path_params path = {.scene = scene,
+                               .camera = params.camera,
+                               .width = PICTURE_EDGE,
+                               .height = PICTURE_EDGE,
+                               .samples = SAMPLES,
+                               .bounces = PATH_BOUNCES_UNLIMITED,
+                               .seed = 5};
+    struct path_picture traced;
+    assert_true(path_trace(&path, &traced));
+    struct test_picture none = gi_draw(scene, &params), cache, rays;
+    draw_indirect(scene, GATHER_CACHE, &none, &cache);
+    draw_indirect(scene, GATHER_RAYS, &none, &rays);
+    double by_cache = relative_error(cache.pixels, traced.indirect);
+    double by_rays = relative_error(rays.pixels, traced.indirect);
+    struct gi_report report = {0};
+    gi_check(&report, by_rays <= RAYS_MOST, "rays err by %.3f of the mean (at most %.2f)", by_rays,
+             RAYS_MOST);
+    gi_check(&report, by_cache >= VOXELS_LEAST * by_rays, "voxels err by %.3f, %g times as much",
+             by_cache, by_cache / by_rays);
+    gi_picture_finish(&none);
+    gi_picture_finish(&cache);
+    gi_picture_finish(&rays);
+    path_picture_finish(&traced);
+    scene_destroy(&scene);
+    gi_report_finish(&report);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rays_find_what_voxels_do_not),
+    };
+    return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);
+}
