@@ -126,6 +126,10 @@ struct cJSON *accuracy_measure(const struct accuracy *accuracy, const struct run
 struct cJSON *accuracy_identity(const char *source, const struct cli_sets *sets,
                                 const struct cli_shot *shot);
 
+// The program's quality table: by preset all that its row holds, enums by their names. The caller
+// deletes it.
+struct cJSON *accuracy_quality_table(void);
+
 // All that results depend on, beside the rung: equal text means that they can be kept. Program and
 // shaders count by size and time of change. `reference_path` is NULL for a traced truth, whose own
 // error is there, too. NULL with a message when memory ends.

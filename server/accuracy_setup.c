@@ -1,5 +1,7 @@
 // What results depend on: the scene as it is shown, the program, and the truth.
+#include <assert.h>
 #include <cjson/cJSON.h>
+#include <float.h>
 #include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -82,6 +84,39 @@ cJSON *accuracy_identity(const char *source, const struct cli_sets *sets,
     return json;
 }
 
+// As it is written in the source: 0.2, not 0.200000003.
+static void add_float(cJSON *object, const char *name, float value)
+{
+    char text[32];
+    snprintf(text, sizeof(text), "%.*g", FLT_DIG, (double)value);
+    cJSON_AddNumberToObject(object, name, strtod(text, NULL));
+}
+
+static_assert(sizeof(struct quality_level) == 11 * sizeof(uint32_t),
+              "a field that is new belongs into accuracy_quality_table(), too");
+
+cJSON *accuracy_quality_table(void)
+{
+    cJSON *table = cJSON_CreateObject();
+    for (int i = 0; i < QUALITY_COUNT; i++) {
+        const struct quality_level *level = &quality_levels[i];
+        cJSON *row = cJSON_AddObjectToObject(table, quality_names[i]);
+        add_float(row, "resolution_scale", level->resolution_scale);
+        add_float(row, "texture_anisotropy", level->texture_anisotropy);
+        cJSON_AddNumberToObject(row, "shadow_taps", level->shadow_taps);
+        cJSON_AddNumberToObject(row, "shadow_cascades", level->shadow_cascades);
+        cJSON_AddStringToObject(row, "voxel_resolution",
+                                voxel_resolution_names[level->voxel_resolution]);
+        cJSON_AddStringToObject(row, "cone_set", cone_set_names[level->cone_set]);
+        add_float(row, "cone_step", level->cone_step);
+        cJSON_AddStringToObject(row, "gather_mode", gather_mode_names[level->gather_mode]);
+        cJSON_AddBoolToObject(row, "soft_shadows", level->soft_shadows);
+        add_float(row, "specular_roughness", level->specular_roughness);
+        add_float(row, "specular_reflectance", level->specular_reflectance);
+    }
+    return table;
+}
+
 // The truth's own error, by every metric.
 static cJSON *truth_error(const struct accuracy *accuracy, struct error *out_error)
 {
@@ -116,6 +151,7 @@ cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_pat
     shader_hash = 0;
     nftw(renderer_get_shader_dir(accuracy->shot.renderer), add_shader, MAX_OPEN_FILES, FTW_PHYS);
     add_hash(setup, "shaders", shader_hash);
+    cJSON_AddItemToObject(setup, "quality", accuracy_quality_table());
     cJSON_AddStringToObject(setup, "gi", gi_method_names[accuracy->shot.params.settings.gi_method]);
     cJSON_AddNumberToObject(setup, "frames", accuracy->frames);
     cJSON_AddNumberToObject(setup, "edits", accuracy->edits);

@@ -1,18 +1,44 @@
-// voxcast info: what the renderer found.
+// voxcast info: what the renderer found, or what the presets are.
+#include <cjson/cJSON.h>
 #include <stdio.h>
 
+#include "server/accuracy.h"
 #include "server/cli.h"
 #include "server/cli_options.h"
+
+static const char usage[] =
+    "usage: voxcast info [--gpu auto|software|N] [--quality]\n"
+    "\n"
+    "Shows the GL renderer, its limits and the built-in scenes.\n"
+    "\n"
+    "  --gpu auto|software|N   which one (default auto)\n"
+    "  --quality               print the quality table instead, as JSON: what each preset is.\n"
+    "                          Needs no GL\n";
+
+static int print_quality_table(void)
+{
+    cJSON *table = accuracy_quality_table();
+    char *text = cJSON_Print(table);
+    cJSON_Delete(table);
+    if (!text)
+        return cli_fail(CLI_EXIT_OUTPUT, "out of memory");
+    puts(text);
+    cJSON_free(text);
+    return 0;
+}
 
 int cli_info(int argc, char **argv)
 {
     const char *gpu;
-    struct cli_parser parser = {.command = "info",
-                                .usage = "usage: voxcast info [--gpu auto|software|N]\n"};
+    bool quality = false;
+    struct cli_parser parser = {.command = "info", .usage = usage};
     int status;
     cli_take_gpu(&parser, &gpu);
+    cli_take_flag(&parser, "quality", &quality);
     if (!cli_parse(&parser, argc, argv, &status))
         return status;
+    if (quality)
+        return print_quality_table();
     struct error error;
     struct renderer *renderer = renderer_create(&(struct renderer_params){.gpu = gpu}, &error);
     if (!renderer)

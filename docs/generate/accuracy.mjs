@@ -1,12 +1,13 @@
 // ./dev accuracy: measures scenes by voxcast accuracy, each in a folder of its own, where a run that was stopped goes
-// on, and writes docs/accuracy.md of what is there.
+// on, and writes docs/accuracy.md and docs/accuracy/figures.json of what is there.
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { availableParallelism, cpus } from 'node:os';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 
+import { figuresOf, figuresText } from './accuracy_figures.mjs';
 import { writePage } from './accuracy_page.mjs';
 import { SCENES } from './accuracy_scenes.mjs';
 
@@ -17,7 +18,8 @@ const SCENES_FOLDER = process.env.VOXCAST_SCENES || join(ROOT, '../shared/scenes
 
 const USAGE = `usage: ./dev accuracy [OPTIONS]
 
-Measures every scene by voxcast accuracy and writes docs/accuracy.md. The machine should have nothing else to do.
+Measures every scene by voxcast accuracy and writes docs/accuracy.md, and for the test that judges the presets
+docs/accuracy/figures.json. The machine should have nothing else to do.
 What has been measured by the same program is kept; a run that was stopped goes on.
 
   --scenes A,B     only these: ${SCENES.map(({ name }) => name).join(', ')}
@@ -27,8 +29,8 @@ What has been measured by the same program is kept; a run that was stopped goes 
   --ladder NAME    quick, full or a file (default full)
   --frames N       of a moving camera for each setting (default 12)
   --out DIR        where measurements are kept (default build/accuracy)
-  --docs DIR       where the page is written (default docs)
-  --page-only      measure nothing; write the page of what is there
+  --docs DIR       where page and figures are written (default docs)
+  --page-only      measure nothing; write page and figures of what is there
 Scenes that are not shipped are read from the folder VOXCAST_SCENES, or else ../shared/scenes; what is not there is
 left out.
 `;
@@ -94,17 +96,31 @@ function loadRun(scene, folder) {
   return results.rungs.length > 0 ? { scene, folder, results } : null;
 }
 
-function describeMachine(runs) {
+const machineOf = (runs) => ({
+  processor: cpus()[0]?.model ?? 'unknown',
+  cores: availableParallelism?.() ?? cpus().length,
+  gl_renderer: [...new Set(runs.map(({ results }) => results.setup.gl_renderer))].join('; '),
+});
+
+function describe({ processor, cores, gl_renderer }) {
   const git = spawnSync('git', ['-C', ROOT, 'rev-parse', '--short', 'HEAD'], { encoding: 'utf8' });
-  const drivers = [...new Set(runs.map(({ results }) => results.setup.gl_renderer))].join('; ');
   const commit = git.status === 0 ? git.stdout.trim() : 'unknown';
   return [
     '| measured on | |',
     '|---|---|',
-    `| processor | ${cpus()[0]?.model ?? 'unknown'}, ${availableParallelism?.() ?? cpus().length} cores |`,
-    `| GL renderer | ${drivers} |`,
+    `| processor | ${processor}, ${cores} cores |`,
+    `| GL renderer | ${gl_renderer} |`,
     `| commit | ${commit} |`,
   ].join('\n');
+}
+
+function writeFigures(runs, machine, path) {
+  try {
+    writeFileSync(path, figuresText(figuresOf(runs, machine)));
+    process.stderr.write(`accuracy: wrote ${path}\n`);
+  } catch (error) {
+    fail(`cannot write ${path}: ${error.message}`);
+  }
 }
 
 const options = readOptions();
@@ -123,13 +139,15 @@ const found = scenes.map((scene) => ({ scene, run: loadRun(scene, join(options.o
 const runs = found.flatMap(({ run }) => run ?? []);
 if (runs.length === 0) fail(`nothing has been measured in ${options.out}`);
 mkdirSync(join(options.docs, 'accuracy'), { recursive: true });
+const machine = machineOf(runs);
 const causes = join(ROOT, 'docs/accuracy/causes.md');
 writePage({
   runs,
   missing: found.filter(({ run }) => !run).map(({ scene }) => scene),
-  machine: describeMachine(runs),
+  machine: describe(machine),
   causes: readFileSync(causes, 'utf8'),
   folder: options.docs,
 });
 process.stderr.write(`accuracy: wrote ${join(options.docs, 'accuracy.md')}\n`);
+writeFigures(runs, machine, join(options.docs, 'accuracy/figures.json'));
 if (failed.length > 0) fail(`failed: ${failed.join(', ')}`);

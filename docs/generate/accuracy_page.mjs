@@ -4,6 +4,8 @@ import { writeFileSync } from 'node:fs';
 
 import { buysTable } from './accuracy_buys.mjs';
 import { worstWindows } from './accuracy_errors.mjs';
+import { sceneFigures } from './accuracy_figures.mjs';
+import { MOST_EXCESS, presetTable } from './accuracy_presets.mjs';
 import { cropped, readPng, resized, tiled, writePng } from './png.mjs';
 import { chartSvg } from './svg.mjs';
 
@@ -155,6 +157,10 @@ bright scores about 0.15, one 2 % too bright 0.05. **Energy** is the mean of a c
 faster and less wrong; its names are bold. **~** before a figure: the truth's own error, by the same measure, is more
 than a tenth of the error shown.`;
 
+const PRESETS_INTRO = `How much more each preset errs than the best setting that is as fast (\`final\`: that has settled as soon, too). A
+test reads these figures from [accuracy/figures.json](accuracy/figures.json) and allows up to
+${(100 * (MOST_EXCESS - 1)).toFixed(0)} % in the built-in scenes; what is beyond is bold.`;
+
 /**
  * Writes accuracy.md and its pictures.
  * @param {{ runs: Run[], missing: import('./accuracy_scenes.mjs').Scene[], machine: string, causes: string, folder: string }} params
@@ -164,6 +170,7 @@ export function writePage({ runs, missing, machine, causes, folder }) {
   const buys = buysTable(runs.map(({ results }) => results.rungs));
   const parts = [INTRO, machine, '## All scenes', 'LDR-FLIP of each preset.', overview(runs)];
   if (missing.length > 0) parts.push(`Not measured: ${missing.map(({ title }) => title).join(', ')}.`);
+  parts.push('## Presets and the front', PRESETS_INTRO, presetTable(runs.map((run) => ({ title: run.scene.title, ...sceneFigures(run) }))));
   parts.push('## Scene by scene', ...runs.map((run) => sceneSection(run, join(folder, 'accuracy'))));
   parts.push('## What each setting buys');
   parts.push(

@@ -197,6 +197,24 @@ static void assert_file(const char *name)
         fail_msg("%s is missing", name);
 }
 
+static void test_quality_table(void **state)
+{
+    (void)state;
+    cJSON *table = accuracy_quality_table();
+    assert_int_equal(cJSON_GetArraySize(table), QUALITY_COUNT);
+    for (int i = 0; i < QUALITY_COUNT; i++) {
+        const struct quality_level *level = &quality_levels[i];
+        const cJSON *row = at(table, quality_names[i]);
+        assert_true((float)at(row, "cone_step")->valuedouble == level->cone_step);
+        assert_true((float)at(row, "specular_roughness")->valuedouble == level->specular_roughness);
+        assert_int_equal(at(row, "shadow_taps")->valuedouble, level->shadow_taps);
+        assert_string_equal(at(row, "gather_mode")->valuestring,
+                            gather_mode_names[level->gather_mode]);
+        assert_true(cJSON_IsTrue(at(row, "soft_shadows")) == level->soft_shadows);
+    }
+    cJSON_Delete(table);
+}
+
 static void test_a_run(void **state)
 {
     (void)state;
@@ -217,6 +235,9 @@ static void test_a_run(void **state)
     for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++)
         assert_file(files[i]);
     results = read_results();
+    cJSON *table = accuracy_quality_table();
+    assert_true(cJSON_Compare(at(at(results, "setup"), "quality"), table, true));
+    cJSON_Delete(table);
     const cJSON *rungs = at(results, "rungs");
     assert_int_equal(cJSON_GetArraySize(rungs), 2);
     const cJSON *none = cJSON_GetArrayItem(rungs, 0), *half = cJSON_GetArrayItem(rungs, 1);
@@ -276,7 +297,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_named_ladders), cmocka_unit_test(test_ladders_in_files),
         cmocka_unit_test(test_pareto_front),  cmocka_unit_test(test_wrong_truths),
-        cmocka_unit_test(test_a_run),
+        cmocka_unit_test(test_quality_table), cmocka_unit_test(test_a_run),
     };
     return cmocka_run_group_tests(tests, NULL, remove_folder);
 }

@@ -1,8 +1,9 @@
 // Proves the page that ./dev accuracy writes, from made-up results whose figures are known: tables, what is on the
-// front, what noise makes unsure, what steps of settings buy, the windows that err most, and the picture files.
+// front, what noise makes unsure, what steps of settings buy, the windows that err most, the picture files, and the figures
+// that are kept.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -45,8 +46,14 @@ const RUNGS = [
 RUNGS[2].settings.preset = 'final';
 
 const noise = (reference, smallest) => ({ reference, smallest, enough: reference <= 0.1 * smallest });
+const QUALITY = { high: { gather_mode: 'cache', cone_step: 0.5 }, final: { gather_mode: 'rays', cone_step: 0.25 } };
 const RESULTS = {
-  setup: { scene: { source: 'builtin:cornell', width: WIDTH, height: HEIGHT }, gl_renderer: 'a renderer', reference: { noise: 0.004, direct: true } },
+  setup: {
+    scene: { source: 'builtin:cornell', width: WIDTH, height: HEIGHT },
+    gl_renderer: 'a renderer',
+    quality: QUALITY,
+    reference: { noise: 0.004, direct: true },
+  },
   metrics: ['ldr_flip', 'ssim', 'rel_mse', 'energy_red'].map((name) => ({ name, title: name.toUpperCase(), unit: '' })),
   rungs: RUNGS,
   noise: { metrics: { ldr_flip: noise(0.004, 0.05), ssim: noise(0.01, 0.05), energy_red: noise(0.001, 0.1) }, indirect: { energy_red: noise(0.02, 0.1) } },
@@ -119,13 +126,17 @@ test('steps pair rungs that differ in one setting alone', () => {
 
 const run = (...options) => spawnSync(process.execPath, [PROGRAM, ...options], { encoding: 'utf8' });
 
-test('the page has curve, tables, marks of noise, pictures and the reasons', () => {
-  const [out, docs] = ['out', 'docs'].map((name) => join(folder, name));
+function writeResults(out, results) {
   mkdirSync(join(out, 'cornell'), { recursive: true });
-  writeFileSync(join(out, 'cornell', 'results.json'), JSON.stringify(RESULTS));
+  writeFileSync(join(out, 'cornell', 'results.json'), JSON.stringify(results));
   writePng(join(out, 'cornell', 'reference.png'), gradient());
   writePng(join(out, 'cornell', 'picture.png'), gradient());
   writePng(join(out, 'cornell', 'error.png'), errorMap({ x: 10, y: 20 }));
+}
+
+test('the page has curve, tables, marks of noise, pictures and the reasons', () => {
+  const [out, docs] = ['out', 'docs'].map((name) => join(folder, name));
+  writeResults(out, RESULTS);
   const { status, stderr } = run('--page-only', '--out', out, '--docs', docs, '--scenes', 'cornell,atrium');
   assert.equal(status, 0, stderr);
   const page = readFileSync(join(docs, 'accuracy.md'), 'utf8');
@@ -137,12 +148,31 @@ test('the page has curve, tables, marks of noise, pictures and the reasons', () 
   assert.match(page, /\| clipmap-bounces-4 \| 50 .*\| {2}\|/);
   assert.match(page, /- `grid-64-half`: preset high, gi_method grid, voxel_resolution 64, gather_mode half/);
   assert.match(page, /LDR-FLIP 0\.\d+ around \(\d+, \d+\)/);
+  assert.match(page, /## Presets and the front[^#]*\| Cornell box \| – \| – \| on it \| on it \|/);
   assert.match(page, /## What each setting buys[^#]*bounces: 4 → unlimited/);
   assert.match(page, /## Where it is wrong and why\n\n\*\*/);
   assert.doesNotMatch(page, /undefined|NaN|\[object/);
   const svg = readFileSync(join(docs, 'accuracy', 'cornell.svg'), 'utf8');
   assert.equal(svg.match(/class="point"/g).length, RUNGS.length);
   for (const name of ['cornell.png', 'cornell-errors.png']) assert.ok(statSync(join(docs, 'accuracy', name)).size > 100);
+});
+
+test('figures are written beside the page, unless the results do not tell the quality table', () => {
+  const [out, docs] = ['figures-out', 'figures-docs'].map((name) => join(folder, name));
+  const path = join(docs, 'accuracy', 'figures.json');
+  const options = ['--page-only', '--out', out, '--docs', docs, '--scenes', 'cornell'];
+  writeResults(out, { ...RESULTS, setup: { ...RESULTS.setup, quality: undefined } });
+  const refused = run(...options);
+  assert.equal(refused.status, 1);
+  assert.match(refused.stderr, /cannot write .*figures\.json: the results of cornell do not tell the quality table; it must be measured anew/);
+  assert.equal(existsSync(path), false);
+  writeResults(out, RESULTS);
+  assert.equal(run(...options).status, 0);
+  const { machine, quality, scenes } = JSON.parse(readFileSync(path, 'utf8'));
+  assert.equal(machine.gl_renderer, 'a renderer');
+  assert.ok(machine.processor && machine.cores >= 1);
+  assert.deepEqual(quality, QUALITY);
+  assert.deepEqual(scenes.map(({ name, rungs }) => [name, rungs.length]), [['cornell', RUNGS.length]]);
 });
 
 test('refuses what it does not know', () => {

@@ -1,0 +1,101 @@
+// Whether the presets of the quality table are where measured settings say that they should be: near the Pareto
+// front of error and time. Works on figures as accuracy_figures.mjs records them, never on times taken now.
+
+/** @typedef {{ name: string, settings: any, frame_ms: number, settle_ms: number, settled: boolean, metrics: any }} Rung */
+
+export const PRESETS = ['draft', 'interactive', 'high', 'final'];
+
+/** An error over the least of all that is as fast, up to which a preset counts as on the front. */
+export const MOST_EXCESS = 1.1;
+
+/** What a preset is for decides what its time is: `final` is for still pictures, which must settle. */
+const TIMES = { draft: ['frame_ms'], interactive: ['frame_ms'], high: ['frame_ms'], final: ['frame_ms', 'settle_ms'] };
+
+const flipOf = (rung) => rung.metrics.ldr_flip;
+
+/** What has not settled takes longer than was waited for. */
+const timeOf = (rung, time) => (time === 'settle_ms' && !rung.settled ? Infinity : rung[time]);
+
+const hasFigures = (rung, times) => [flipOf(rung), ...times.map((time) => rung[time])].every(Number.isFinite);
+
+/** The rung that is the preset itself, whatever its name. @param {Rung[]} rungs @returns {Rung | undefined} */
+export const rungOfPreset = (rungs, preset) =>
+  rungs.find(({ settings }) => settings.preset === preset && settings.scale === 1 && Object.keys(settings.set).length === 0);
+
+/**
+ * The point of the front at a preset's time: the rung that errs least of those at most as slow, itself included.
+ * @param {Rung[]} rungs of one scene
+ * @returns {Rung | undefined} none if the preset has no figures
+ */
+export function frontAt(rungs, preset) {
+  const own = rungOfPreset(rungs, preset);
+  const times = TIMES[preset];
+  if (!own || !hasFigures(own, times)) return undefined;
+  const asFast = rungs.filter((rung) => hasFigures(rung, times) && times.every((time) => timeOf(rung, time) <= timeOf(own, time)));
+  return asFast.reduce((best, rung) => (flipOf(rung) < flipOf(best) ? rung : best), own);
+}
+
+/**
+ * Each preset in one scene.
+ * @param {{ rungs: Rung[] }} scene
+ * @returns {{ preset: string, own?: Rung, front?: Rung, excess: number, isNear: boolean }[]} `excess`: the preset's
+ *   LDR-FLIP over the front's, 1 on it; infinite where the preset was not measured
+ */
+export function judgePresets({ rungs }) {
+  return PRESETS.map((preset) => {
+    const own = rungOfPreset(rungs, preset);
+    const front = frontAt(rungs, preset);
+    const excess = !own || !front ? Infinity : front === own ? 1 : flipOf(own) / flipOf(front);
+    return { preset, own, front, excess, isNear: excess <= MOST_EXCESS };
+  });
+}
+
+/** The figures that a preset is judged by. */
+function judgedText(rung, preset) {
+  const settling = rung.settled ? `${rung.settle_ms} ms to settle` : `not settled after ${rung.settle_ms} ms`;
+  return [`LDR-FLIP ${flipOf(rung)}`, `${rung.frame_ms} ms a frame`, ...(TIMES[preset].includes('settle_ms') ? [settling] : [])].join(', ');
+}
+
+/** What is wrong with the presets in one scene, a sentence each. @param {{ name: string, rungs: Rung[] }} scene */
+export function faultsOf(scene) {
+  return judgePresets(scene)
+    .filter(({ isNear }) => !isNear)
+    .map(({ preset, own, front, excess }) => {
+      if (!own) return `${scene.name}: preset ${preset} was not measured`;
+      if (!front) return `${scene.name}: preset ${preset} has no figures of error and time`;
+      const [more, most] = [excess - 1, MOST_EXCESS - 1].map((share) => `${(100 * share).toFixed(1)} %`);
+      const [mine, other] = [own, front].map((rung) => judgedText(rung, preset));
+      return `${scene.name}: preset ${preset} (${mine}) errs ${more} more than rung ${front.name} (${other}), which is at most as slow; up to ${most} is allowed`;
+    });
+}
+
+/** Whether settings beside the presets were measured: without them, any preset is on the front of what there is. */
+export const hasVariations = ({ rungs }) =>
+  rungs.some((rung) => rung.settings.set.gi_method !== 'none' && !PRESETS.some((preset) => rungOfPreset(rungs, preset) === rung));
+
+/**
+ * Where two quality tables differ, a phrase each; none if they are the same.
+ * @param {Record<string, any>} recorded @param {Record<string, any>} present
+ */
+export function tableChanges(recorded, present) {
+  const union = (a, b) => [...new Set([...Object.keys(a ?? {}), ...Object.keys(b ?? {})])];
+  const text = (value) => (value === undefined ? 'nothing' : JSON.stringify(value));
+  return union(recorded, present).flatMap((preset) =>
+    union(recorded[preset], present[preset])
+      .map((field) => [field, recorded[preset]?.[field], present[preset]?.[field]])
+      .filter(([, before, now]) => before !== now)
+      .map(([field, before, now]) => `${preset}.${field}: ${text(before)} when it was measured, ${text(now)} now`),
+  );
+}
+
+/** A table of all presets in all scenes. @param {{ title: string, rungs: Rung[] }[]} scenes @returns {string} Markdown */
+export function presetTable(scenes) {
+  const cell = ({ own, front, excess, isNear }) => {
+    if (!own || !front) return '–';
+    if (front === own) return 'on it';
+    const text = `+${(100 * (excess - 1)).toFixed(1)} % (\`${front.name}\`)`;
+    return isNear ? text : `**${text}**`;
+  };
+  const rows = scenes.map((scene) => `| ${scene.title} | ${judgePresets(scene).map(cell).join(' | ')} |`);
+  return [`| scene | ${PRESETS.join(' | ')} |`, '|---|---|---|---|---|', ...rows].join('\n');
+}
