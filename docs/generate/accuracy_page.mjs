@@ -157,7 +157,7 @@ bright scores about 0.15, one 2 % too bright 0.05. **Energy** is the mean of a c
 faster and less wrong; its names are bold. **~** before a figure: the truth's own error, by the same measure, is more
 than a tenth of the error shown.`;
 
-const PRESETS_INTRO = `How much more each preset errs than the best setting that is as fast (\`final\`: that has settled as soon, too). A
+const PRESETS_INTRO = `How much more each preset errs than the best setting that is as fast and has settled as soon. A
 test reads these figures from [accuracy/figures.json](accuracy/figures.json) and allows up to
 ${(100 * (MOST_EXCESS - 1)).toFixed(0)} % in the built-in scenes; what is beyond is bold.`;
 

@@ -8,15 +8,15 @@ export const PRESETS = ['draft', 'interactive', 'high', 'final'];
 /** An error over the least of all that is as fast, up to which a preset counts as on the front. */
 export const MOST_EXCESS = 1.1;
 
-/** What a preset is for decides what its time is: `final` is for still pictures, which must settle. */
-const TIMES = { draft: ['frame_ms'], interactive: ['frame_ms'], high: ['frame_ms'], final: ['frame_ms', 'settle_ms'] };
+/** As fast is what is as fast both while the camera moves and until its picture has settled. */
+const TIMES = ['frame_ms', 'settle_ms'];
 
 const flipOf = (rung) => rung.metrics.ldr_flip;
 
 /** What has not settled takes longer than was waited for. */
 const timeOf = (rung, time) => (time === 'settle_ms' && !rung.settled ? Infinity : rung[time]);
 
-const hasFigures = (rung, times) => [flipOf(rung), ...times.map((time) => rung[time])].every(Number.isFinite);
+const hasFigures = (rung) => [flipOf(rung), ...TIMES.map((time) => rung[time])].every(Number.isFinite);
 
 /** The rung that is the preset itself, whatever its name. @param {Rung[]} rungs @returns {Rung | undefined} */
 export const rungOfPreset = (rungs, preset) =>
@@ -29,9 +29,8 @@ export const rungOfPreset = (rungs, preset) =>
  */
 export function frontAt(rungs, preset) {
   const own = rungOfPreset(rungs, preset);
-  const times = TIMES[preset];
-  if (!own || !hasFigures(own, times)) return undefined;
-  const asFast = rungs.filter((rung) => hasFigures(rung, times) && times.every((time) => timeOf(rung, time) <= timeOf(own, time)));
+  if (!own || !hasFigures(own)) return undefined;
+  const asFast = rungs.filter((rung) => hasFigures(rung) && TIMES.every((time) => timeOf(rung, time) <= timeOf(own, time)));
   return asFast.reduce((best, rung) => (flipOf(rung) < flipOf(best) ? rung : best), own);
 }
 
@@ -51,9 +50,9 @@ export function judgePresets({ rungs }) {
 }
 
 /** The figures that a preset is judged by. */
-function judgedText(rung, preset) {
+function judgedText(rung) {
   const settling = rung.settled ? `${rung.settle_ms} ms to settle` : `not settled after ${rung.settle_ms} ms`;
-  return [`LDR-FLIP ${flipOf(rung)}`, `${rung.frame_ms} ms a frame`, ...(TIMES[preset].includes('settle_ms') ? [settling] : [])].join(', ');
+  return `LDR-FLIP ${flipOf(rung)}, ${rung.frame_ms} ms a frame, ${settling}`;
 }
 
 /** What is wrong with the presets in one scene, a sentence each. @param {{ name: string, rungs: Rung[] }} scene */
@@ -64,7 +63,7 @@ export function faultsOf(scene) {
       if (!own) return `${scene.name}: preset ${preset} was not measured`;
       if (!front) return `${scene.name}: preset ${preset} has no figures of error and time`;
       const [more, most] = [excess - 1, MOST_EXCESS - 1].map((share) => `${(100 * share).toFixed(1)} %`);
-      const [mine, other] = [own, front].map((rung) => judgedText(rung, preset));
+      const [mine, other] = [own, front].map((rung) => judgedText(rung));
       return `${scene.name}: preset ${preset} (${mine}) errs ${more} more than rung ${front.name} (${other}), which is at most as slow; up to ${most} is allowed`;
     });
 }
