@@ -49,6 +49,13 @@ static void fill_texture_block(const struct texture_space *space, struct texture
         (place->class_number << TEXTURE_CLASS_BIT) | (place->layer << TEXTURE_LAYER_BIT);
 }
 
+// glTF 2.0: green is roughness, blue metallic.
+static void scale_means(struct material_block *block, const struct image_place *map)
+{
+    block->means[0] *= map->mean[2];
+    block->means[1] *= map->mean[1];
+}
+
 static void fill_material_block(struct material_block *block, const struct scene_material *material)
 {
     memcpy(block->base_color, material->base_color, sizeof(block->base_color));
@@ -68,6 +75,8 @@ static void fill_material_block(struct material_block *block, const struct scene
     block->dielectric[2] = material->transmission;
     block->dielectric[3] = material->thickness_m;
     block->specular_color[3] = material->attenuation_distance_m;
+    block->means[0] = material->metallic;
+    block->means[1] = material->roughness;
     static const uint32_t shading[] = {
         [SCENE_SHADING_PBR] = SHADE_PBR,
         [SCENE_SHADING_BLINN_PHONG] = SHADE_BLINN_PHONG,
@@ -98,6 +107,9 @@ bool resident_upload_materials(struct resident *resident)
                 continue;
             const struct scene_texture *texture = &material->textures[slot];
             materials[i].info[2] |= 1u << slot;
+            if (slot == SCENE_TEXTURE_METALLIC_ROUGHNESS)
+                scale_means(&materials[i],
+                            &resident->texture_spaces[TEXTURE_SPACE_DATA].places[texture->image]);
             resident->texture_transforms = resident->texture_transforms || has_transform(texture);
             resident->second_uv_set = resident->second_uv_set || texture->uv_set == 1;
             fill_texture_block(&resident->texture_spaces[resident_texture_space(slot)],

@@ -44,6 +44,7 @@ struct material_block {
     vec4 dielectric;        // F0 from IOR, specular weight, transmission, thickness in metres
     vec4 specular_color;    // w: attenuation distance in metres, 0 none
     vec4 attenuation_color; // w: index of refraction
+    vec4 means;             // metallic and roughness with the mean of their texture; unused, unused
     uvec4 info;             // flags, first texture, mask of texture slots in use, unused
 };
 
@@ -82,7 +83,7 @@ struct shadow_view_block {
     static_assert(sizeof(struct block) == (count) * sizeof(vec4), #block " has no padding")
 BLOCK_VECTORS(frame_block, 17 + 2 * MAX_CASCADES);
 BLOCK_VECTORS(instance_block, 5);
-BLOCK_VECTORS(material_block, 7);
+BLOCK_VECTORS(material_block, 8);
 BLOCK_VECTORS(texture_block, 3);
 BLOCK_VECTORS(light_block, 5);
 BLOCK_VECTORS(area_light_block, 8);

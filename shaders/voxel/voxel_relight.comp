@@ -63,18 +63,18 @@ void add_surfel(inout side s, uint word, material_block m, bool directly, float 
 #endif
     uint alpha = m.info.x & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK);
     opacity = alpha != 0u ? clamp(opacity * m.base_color.a, 0.0, 1.0) : 1.0;
-    float transmission = m.dielectric.z * (1.0 - m.surface.x);
+    float transmission = m.dielectric.z * (1.0 - m.means.x);
     // Mean reflectance over the hemisphere: the dielectric layer's, then the diffuse base, of which the
     // layer holds back what Schlick has of v.h (0.0037 of the rise, see mean_diffuse_share()), or the
-    // metal. Roughness is the material's factor: voxels know nothing of its texture.
+    // metal; metallic and roughness as they are on average.
     bool plain = (m.info.x & MATERIAL_IOR_ONE) != 0u;
     vec3 f0 = plain ? vec3(0.0) : min(m.dielectric.x * m.specular_color.rgb, 1.0) * m.dielectric.y;
     float f90 = plain ? 0.0 : m.dielectric.y;
-    vec2 share = mean_specular_share(m.surface.y);
+    vec2 share = mean_specular_share(m.means.y);
     vec3 held = mix(f0, vec3(f90), 0.0037);
     vec3 dielectric = f0 * share.x + f90 * share.y +
                       base * (1.0 - transmission) * (1.0 - max(held.r, max(held.g, held.b)));
-    vec3 reflectance = mix(dielectric, base * share.x + share.y, m.surface.x);
+    vec3 reflectance = mix(dielectric, base * share.x + share.y, m.means.x);
     bool unlit = (m.info.x & MATERIAL_SHADING_MASK) == SHADE_UNLIT;
     s.weight += weight;
     s.mask |= surfels[word + SURFEL_MASK];
