@@ -38,8 +38,8 @@ struct scene *gi_glowing_ball_scene(void);
 // A closed room lit by a planar lamp over a floor of brushed metal, which shows lamp and walls.
 struct scene *gi_metal_floor_scene(void);
 
-// A low table in a closed room with a lamp, before a wall that mirrors: light under the table, and what
-// the mirror shows, lie between voxels.
+// A low table in a closed room with a lamp, before a wall that mirrors: light under the table, and
+// what the mirror shows, lie between voxels.
 struct scene *gi_table_scene(void);
 
 // Two closed rooms with a wall between them; a lamp in the first.
