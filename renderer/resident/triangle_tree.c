@@ -54,6 +54,24 @@ static bool emits_directly(const struct resident_instance *instance)
     return instance->emits_directly && !instance->large_emitter;
 }
 
+static const struct scene_material *material_of(const struct resident *resident,
+                                                const struct resident_instance *instance)
+{
+    const struct scene *scene = resident->scene;
+    return &scene->materials[scene->primitives[instance->primitive].material];
+}
+
+// Share of rays that its triangles stop.
+static float opacity_of(const struct resident *resident, const struct resident_instance *instance)
+{
+    const struct scene_material *material = material_of(resident, instance);
+    if (material->alpha_mode != SCENE_ALPHA_MASK)
+        return 1.0f;
+    uint32_t image = material->textures[SCENE_TEXTURE_BASE_COLOR].image;
+    const struct texture_space *space = &resident->texture_spaces[TEXTURE_SPACE_COLOR];
+    return material->base_color[3] * (image == SCENE_NONE ? 1.0f : space->places[image].mean[3]);
+}
+
 // Of all that the tree is made from.
 static uint64_t content_key(const struct resident *resident)
 {
@@ -61,11 +79,16 @@ static uint64_t content_key(const struct resident *resident)
     uint64_t key = 1469598103934665603ull;
     key = (key ^ now->geometry) * 1099511628211ull;
     key = (key ^ now->transforms) * 1099511628211ull;
-    for (uint32_t i = 0; i < resident->counts.instances; i++)
+    for (uint32_t i = 0; i < resident->counts.instances; i++) {
+        const struct resident_instance *instance = &resident->instances[i];
+        float opacity = opacity_of(resident, instance);
+        uint32_t bits;
+        memcpy(&bits, &opacity, sizeof(bits));
+        key = (key ^ bits) * 1099511628211ull;
         key = (key ^
-               (blocks_light(&resident->instances[i]) +
-                2u * emits_directly(&resident->instances[i]) + 4u * resident->instances[i].group)) *
+               (blocks_light(instance) + 2u * emits_directly(instance) + 4u * instance->group)) *
               1099511628211ull;
+    }
     return key;
 }
 
@@ -88,15 +111,6 @@ static void place_corner(const struct tree_work *work, const float matrix[16],
         out[axis] = (double)matrix[axis] * position[0] + (double)matrix[4 + axis] * position[1] +
                     (double)matrix[8 + axis] * position[2] + (double)matrix[12 + axis] -
                     (double)work->center[axis];
-}
-
-static float opacity_of(const struct resident *resident, const struct scene_material *material)
-{
-    if (material->alpha_mode != SCENE_ALPHA_MASK)
-        return 1.0f;
-    uint32_t image = material->textures[SCENE_TEXTURE_BASE_COLOR].image;
-    const struct texture_space *space = &resident->texture_spaces[TEXTURE_SPACE_COLOR];
-    return material->base_color[3] * (image == SCENE_NONE ? 1.0f : space->places[image].mean[3]);
 }
 
 // Adds a triangle unless it has no area or reaches too far.
@@ -145,12 +159,11 @@ static void add_instance(struct tree_work *work, const struct resident_instance 
 {
     const struct scene *scene = work->resident->scene;
     const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
-    const struct scene_material *material = &scene->materials[primitive->material];
     const float *matrix = scene->nodes[instance->node].world_from_local;
     struct flat_triangle traits = {
-        .opacity = opacity_of(work->resident, material),
+        .opacity = opacity_of(work->resident, instance),
         .flags = (emits_directly(instance) ? TREE_LIT_DIRECTLY : 0) |
-                 (material->double_sided ? 0 : TREE_ONE_SIDED),
+                 (material_of(work->resident, instance)->double_sided ? 0 : TREE_ONE_SIDED),
     };
     bool mirrored = is_mirrored(matrix);
     for (uint32_t i = 0; i < instance->index_count / 3; i++) {
