@@ -174,10 +174,12 @@ describe('the tab of accuracy', () => {
   test('a failure says why, and the next measurement starts afresh', async () => {
     results.rungs = [];
     await button('Measure this view').click();
-    await untilText(/Nothing has been measured yet/);
+    await untilText(/Waits until another measurement has ended/);
+    assert.match(await text(), /Nothing has been measured yet/);
     await tell({ state: 'failed', message: 'no memory for the truth' });
     assert.match(await text(), /Failed: no memory for the truth/);
     await button('Measure this view').click();
+    await untilText(/Waits until another measurement has ended/);
     await measured(5, { state: 'done', done: 5 });
     assert.match(await text(), /Measured 5 of 5 settings/);
     assert.match(await text(), /The truth itself errs by 0\.02, more than a tenth of the least error \(0\.05\)/);

@@ -65,6 +65,14 @@ export function decodeHeader(data) {
 }
 
 export class Client {
+  /** Those that are open. */
+  static #open = new Set();
+
+  /** Closes whatever a test that failed has left open. */
+  static closeAll() {
+    return Promise.all([...Client.#open].map((client) => client.close()));
+  }
+
   /** Opens a connection; rejects with {status} when the upgrade is refused. */
   static open(url, options = {}) {
     return new Promise((resolve, reject) => {
@@ -88,8 +96,12 @@ export class Client {
     this.frames = [];
     this.acknowledge = true;
     this.closed = new Promise((done) =>
-      socket.on('close', (code, reason) => done({ code, reason: String(reason) })),
+      socket.on('close', (code, reason) => {
+        Client.#open.delete(this);
+        done({ code, reason: String(reason) });
+      }),
     );
+    Client.#open.add(this);
     socket.on('message', (data, binary) => (binary ? this.takeFrame(data) : this.takeText(data)));
   }
 

@@ -8,7 +8,7 @@ import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { after, afterEach, before, describe, test } from 'node:test';
 
 import { Client, startDaemon, stopDaemon } from './client.mjs';
 
@@ -81,6 +81,8 @@ describe('accuracy', () => {
     process.env.TMPDIR = folder;
     daemon = await startDaemon(['--scene', 'builtin:cornell']);
   });
+  // A measurement that a failed test has left would make the next one wait.
+  afterEach(() => Client.closeAll());
   after(async () => {
     assert.equal(await stopDaemon(daemon), 0);
     assert.deepEqual(readdirSync(folder), [], 'the daemon leaves no files');
