@@ -413,6 +413,7 @@ bool lights_sample_emitter(const struct lights *lights, const struct snapshot *s
         .distance = squared * nearness,
         .light = emitter->radiance,
         .lift = dot3(emitter->normal, direction) > 0.0f ? -emitter->normal : emitter->normal,
+        .span = span3(emitter->edges[0], emitter->edges[1]),
         .density = emitter->per_area * squared / cosine,
         .casts_shadow = true,
     };
