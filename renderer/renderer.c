@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "renderer/camera.h"
+#include "renderer/finite_check.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
@@ -15,8 +16,10 @@
 #include "renderer/resident/triangle_tree.h"
 #include "renderer/view.h"
 
-// Nearest visible distance, relative to the scene's diagonal. Reversed Z keeps precision anyway.
+// Nearest visible distance, relative to the scene's diagonal, and the most it is in m: what is near
+// is to be seen however far the scene reaches. Reversed Z keeps precision anyway.
 #define NEAR_FRACTION 1e-5f
+#define NEAR_MOST_M   5e-5f
 
 struct renderer {
     struct gpu *gpu;
@@ -162,7 +165,7 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     const struct render_settings *settings = &params->settings;
     struct camera_frame camera;
     camera_frame_init(&camera, &params->camera);
-    float near_m = resident->diagonal_m * NEAR_FRACTION;
+    float near_m = fminf(resident->diagonal_m * NEAR_FRACTION, NEAR_MOST_M);
     *block = (struct frame_block){0};
     camera_clip_from_world(&camera, params->camera.eye,
                            (float)params->width / (float)params->height, near_m,
@@ -202,9 +205,10 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->display[3] = settings->shading_model == SHADING_MODEL_BLINN_PHONG ? 1.0f : 0.0f;
     block->environment[0] = frame->resident->scene->environment.intensity;
     block->environment[1] = frame->resident->scene->environment.rotation_rad;
+    block->environment[2] = resident->diagonal_m;
     block->textures[0] = frame->quality->texture_anisotropy;
     block->textures[2] = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
-    block->textures[1] = resident->diagonal_m * SHADOW_NEAR_FRACTION;
+    block->textures[1] = resident_shadow_near_m(resident);
     block->textures[3] = frame->quality->specular_roughness;
     if (resident->tree)
         memcpy(block->tree, resident->tree->center, sizeof(vec3));
@@ -493,6 +497,16 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
     };
     for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
         add_memory(statistics, renderer->gpu, groups[i][0], groups[i][1]);
+}
+
+bool renderer_check_finite(struct renderer *renderer, const struct view *view,
+                           struct finite_report *out_report, struct error *out_error)
+{
+    const struct finite_check check = {.gpu = renderer->gpu,
+                                       .resident = renderer->resident,
+                                       .view = view,
+                                       .volume = gi_find(&renderer->gi, view->volume_serial)};
+    return finite_check_run(&check, out_report, out_error);
 }
 
 bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, uint32_t width,

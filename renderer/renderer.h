@@ -161,6 +161,24 @@ struct frame_statistics {
 void renderer_view_get_statistics(const struct renderer *renderer, const struct view *view,
                                   struct frame_statistics *out_statistics);
 
+#define FINITE_MAX_RESOURCES 16u
+
+// What a look at the values that frames leave on the GPU has found.
+struct finite_report {
+    uint32_t count;
+    struct finite_resource {
+        const char *name;
+        uint32_t values; // that are infinite or no numbers
+        uint32_t first;  // word of the buffer, or texel, if there are any
+    } resources[FINITE_MAX_RESOURCES];
+};
+
+// Looks for values that are not finite in every floating-point resource that the view's newest
+// frame wrote, and in what it read of the scene. For tests: waits for the GPU; frames that nobody
+// asks about pay nothing. False with a message when a shader fails or memory ends.
+bool renderer_check_finite(struct renderer *renderer, const struct view *view,
+                           struct finite_report *out_report, struct error *out_error);
+
 // Casts a ray through the centre of pixel (x, y) of a view of the given camera and size. False if
 // it hits nothing. The first call after a geometry change builds the BVH.
 bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, uint32_t width,

@@ -31,12 +31,17 @@ static void perspective_from(const float origin[3], const float forward[3], cons
     glm_mat4_mul(clip_from_view, view_from_world, out_clip_from_world);
 }
 
+float resident_shadow_near_m(const struct resident *resident)
+{
+    return fminf(resident->diagonal_m * SHADOW_NEAR_FRACTION, SHADOW_NEAR_MOST_M);
+}
+
 static void add_perspective_view(struct light_builder *builder, const float origin[3],
                                  const float forward[3], const float up[3], float fov_rad)
 {
     struct shadow_view_block *view = &builder->views[builder->layers++];
     *view = (struct shadow_view_block){0};
-    float near_m = builder->resident->diagonal_m * SHADOW_NEAR_FRACTION;
+    float near_m = resident_shadow_near_m(builder->resident);
     perspective_from(origin, forward, up, fov_rad, near_m, view->clip_from_world);
     view->texel[0] = 2.0f * tanf(0.5f * fov_rad) / (float)SHADOW_MAP_EDGE;
     view->texel[3] = 1.0f;

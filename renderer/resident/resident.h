@@ -11,8 +11,10 @@
 #include "shared/blocks.h"
 
 #define SHADOW_MAP_EDGE 2048u
-// Nearest shadow caster of a lamp, relative to the scene's diagonal.
+// Nearest shadow caster of a lamp, relative to the scene's diagonal; and the most it is in m, or
+// something huge and far away would let nearer casters through.
 #define SHADOW_NEAR_FRACTION 1e-4f
+#define SHADOW_NEAR_MOST_M   1e-2f
 
 #define MAX_VIEW_CASCADES (RENDERER_MAX_VIEWS * MAX_CASCADES)
 
@@ -152,6 +154,9 @@ void resident_count_materials(struct resident *resident);
 // Makes resident->tree that of the geometry as it is now; cheap where it is already. False when
 // memory ends.
 bool resident_need_tree(struct resident *resident);
+
+// Distance of the near plane of lamps' shadow views.
+float resident_shadow_near_m(const struct resident *resident);
 
 // Which space a texture slot reads from.
 int resident_texture_space(int slot);
