@@ -164,13 +164,13 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     const struct resident *resident = frame->resident;
     const struct render_settings *settings = &params->settings;
     struct camera_frame camera;
-    camera_frame_init(&camera, &params->camera);
+    camera_frame_init(&camera, &frame->camera);
     float near_m = fminf(resident->diagonal_m * NEAR_FRACTION, NEAR_MOST_M);
     *block = (struct frame_block){0};
-    camera_clip_from_world(&camera, params->camera.eye,
+    camera_clip_from_world(&camera, frame->camera.eye,
                            (float)params->width / (float)params->height, near_m,
                            block->clip_from_world);
-    memcpy(block->eye, params->camera.eye, sizeof(vec3));
+    memcpy(block->eye, frame->camera.eye, sizeof(vec3));
     block->eye[3] = near_m;
     memcpy(block->forward, camera.forward, sizeof(vec3));
     // Rays span the shown picture's aspect, whatever the rendered size was rounded to.
@@ -206,6 +206,8 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->environment[0] = frame->resident->scene->environment.intensity;
     block->environment[1] = frame->resident->scene->environment.rotation_rad;
     block->environment[2] = resident->diagonal_m;
+    float least_m = fminf(LAMP_LEAST_SHARE * resident->diagonal_m, LAMP_LEAST_M);
+    block->environment[3] = least_m * least_m;
     block->textures[0] = frame->quality->texture_anisotropy;
     block->textures[2] = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
     block->textures[1] = resident_shadow_near_m(resident);
@@ -237,7 +239,7 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     if (frame->visibility_changed)
         draw_list_fill(&view->draws, frame->resident, block.clip_from_world,
-                       frame->params->camera.eye);
+                       frame->camera.eye);
     resident_bind(frame->resident);
     view_bind(view);
     if (frame->volume)
@@ -349,11 +351,14 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .resident = resident,
         .view = view,
         .params = params,
+        .camera = params->camera,
         .quality = &quality_levels[params->quality],
         .unchanged = same,
         .visibility_changed =
             !same_scene || view->surfaces_stale || !same_surfaces(view, params, &revisions),
     };
+    resident_place(resident, params->camera.eye, frame.camera.eye);
+    resident_place(resident, params->camera.target, frame.camera.target);
     enum render_result result = take_reference(renderer, &frame, same);
     if (result != RENDER_DRAWN)
         return result;

@@ -384,7 +384,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         return error_set(out_error,
                          "%u views have settings of their own; no more of them can have voxels",
                          GI_MAX_OWN_VOLUMES);
-    if (!volume || !voxel_volume_update(volume, frame->resident, frame->params->camera.eye))
+    if (!volume || !voxel_volume_update(volume, frame->resident, frame->camera.eye))
         return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
     frame->volume = volume;
     frame->view->volume_serial = found->serial;

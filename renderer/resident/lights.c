@@ -103,11 +103,14 @@ static bool light_is_lit(const struct scene *scene, const struct scene_light *li
            scene->nodes[light->node].world_visible;
 }
 
-static void fill_light_block(struct light_block *block, const struct scene *scene, uint32_t id)
+static void fill_light_block(struct light_block *block, const struct resident *resident,
+                             uint32_t id)
 {
+    const struct scene *scene = resident->scene;
     const struct scene_light *light = &scene->lights[id];
     *block = (struct light_block){0};
     scene_get_light_placement(scene, id, block->position, block->direction);
+    resident_place(resident, block->position, block->position);
     static const float types[] = {
         [SCENE_LIGHT_DIRECTIONAL] = LIGHT_DIRECTIONAL,
         [SCENE_LIGHT_POINT] = LIGHT_POINT,
@@ -226,7 +229,7 @@ bool resident_upload_lights(struct resident *resident)
                 if (!light_is_lit(scene, light) || directional != (round == 0))
                     continue;
                 struct light_block *block = &lights[counts->lights++];
-                fill_light_block(block, scene, i);
+                fill_light_block(block, resident, i);
                 add_light_shadow(builder, block, light);
                 counts->ranged_lights += block->direction[3] > 0.0f;
             }
