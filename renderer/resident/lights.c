@@ -12,6 +12,8 @@ struct light_builder {
     struct resident *resident;
     struct shadow_view_block views[MAX_SHADOW_LAYERS];
     uint32_t layers;
+    const struct light_block
+        *owners[MAX_SHADOW_LAYERS]; // of the lamp whose layers begin here; or NULL
 };
 
 // Reversed, infinite Z: depth = near / distance.
@@ -99,6 +101,7 @@ void resident_directional_view(const struct resident *resident, const float axis
 static bool light_is_lit(const struct scene *scene, const struct scene_light *light)
 {
     return light->enabled && !light->removed && light->intensity > 0.0f &&
+           isfinite(light->intensity) &&
            (light->color[0] > 0.0f || light->color[1] > 0.0f || light->color[2] > 0.0f) &&
            scene->nodes[light->node].world_visible;
 }
@@ -129,6 +132,30 @@ static void fill_light_block(struct light_block *block, const struct resident *r
     block->shadow[2] = id;
 }
 
+// Whether one shadow map does for both: the same kind of lamp in the same place, which shines the
+// same way.
+static bool shares_shadow(const struct light_block *a, const struct light_block *b)
+{
+    bool turned = memcmp(a->direction, b->direction, sizeof(vec3)) != 0 || a->cone[2] != b->cone[2];
+    bool moved = memcmp(a->position, b->position, sizeof(vec3)) != 0;
+    return a->position[3] == b->position[3] && (!moved || a->position[3] == LIGHT_DIRECTIONAL) &&
+           (!turned || a->position[3] == LIGHT_POINT);
+}
+
+static bool share_shadow(const struct light_builder *builder, struct light_block *block)
+{
+    for (uint32_t i = 0; i < builder->layers; i++) {
+        const struct light_block *owner = builder->owners[i];
+        if (!owner || !shares_shadow(owner, block))
+            continue;
+        block->shadow[0] = owner->shadow[0];
+        block->shadow[1] = owner->shadow[1];
+        block->shadow[3] = owner->shadow[3];
+        return true;
+    }
+    return false;
+}
+
 static void add_light_shadow(struct light_builder *builder, struct light_block *block,
                              const struct scene_light *light)
 {
@@ -139,8 +166,9 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
     bool spot = light->type == SCENE_LIGHT_SPOT && fov < MAX_SPOT_SHADOW_FOV;
     bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
     uint32_t needed = directional || spot ? 1 : 6;
-    if (builder->layers + needed > MAX_SHADOW_LAYERS)
+    if (share_shadow(builder, block) || builder->layers + needed > MAX_SHADOW_LAYERS)
         return;
+    builder->owners[builder->layers] = block;
     block->shadow[0] = builder->layers;
     block->shadow[1] = needed;
     resident->counts.flat_shadows += needed == 1;
