@@ -2,13 +2,10 @@
 #include "tests/stability/stability.h"
 
 extern const struct stability_table stability_geometry, stability_place, stability_camera,
-    stability_light;
+    stability_light, stability_material;
 
 const struct stability_table *const stability_tables[] = {
-    &stability_geometry,
-    &stability_place,
-    &stability_camera,
-    &stability_light,
+    &stability_geometry, &stability_place, &stability_camera, &stability_light, &stability_material,
 };
 
 const uint32_t stability_table_count = sizeof(stability_tables) / sizeof(stability_tables[0]);
