@@ -167,9 +167,8 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     camera_frame_init(&camera, &frame->camera);
     float near_m = fminf(resident->diagonal_m * NEAR_FRACTION, NEAR_MOST_M);
     *block = (struct frame_block){0};
-    camera_clip_from_world(&camera, frame->camera.eye,
-                           (float)params->width / (float)params->height, near_m,
-                           block->clip_from_world);
+    camera_clip_from_world(&camera, frame->camera.eye, (float)params->width / (float)params->height,
+                           near_m, block->clip_from_world);
     memcpy(block->eye, frame->camera.eye, sizeof(vec3));
     block->eye[3] = near_m;
     memcpy(block->forward, camera.forward, sizeof(vec3));
@@ -238,8 +237,7 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     shadow_map_relate_cascades(frame, &block);
     gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     if (frame->visibility_changed)
-        draw_list_fill(&view->draws, frame->resident, block.clip_from_world,
-                       frame->camera.eye);
+        draw_list_fill(&view->draws, frame->resident, block.clip_from_world, frame->camera.eye);
     resident_bind(frame->resident);
     view_bind(view);
     if (frame->volume)
@@ -412,10 +410,13 @@ static void collect_light(struct renderer *renderer, struct view *view,
                           const struct ring_frame *slot, const void *bytes)
 {
     struct voxel_volume *volume = gi_find(&renderer->gi, slot->volume_serial);
-    if (!volume || slot->generation == 0)
+    if (!volume)
         return;
     struct voxel_light_report report;
     memcpy(&report, bytes, sizeof(report));
+    volume->cut = report.cut;
+    if (slot->generation == 0)
+        return;
     gpu_timer_poll(view->timer);
     double trace_ms = 0.0;
     for (uint32_t i = 0; i < PASS_COUNT; i++)
@@ -502,6 +503,18 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
     };
     for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
         add_memory(statistics, renderer->gpu, groups[i][0], groups[i][1]);
+    const struct voxel_volume *volume = gi_find(&renderer->gi, view->volume_serial);
+    const struct scene_rejects none = {0};
+    const struct scene_rejects *rejects = renderer->scene ? &renderer->scene->rejects : &none;
+    const struct reject_statistics found[] = {
+        {"triangles_left_out", rejects->triangles},
+        {"vertices_mended", rejects->vertices},
+        {"parameters_clamped", rejects->parameters},
+        {"voxel_values_cut", volume ? volume->cut : 0},
+        {"lamps_without_shadow", renderer->resident ? renderer->resident->counts.unshadowed : 0},
+    };
+    statistics->reject_count = sizeof(found) / sizeof(found[0]);
+    memcpy(statistics->rejects, found, sizeof(found));
 }
 
 bool renderer_check_finite(struct renderer *renderer, const struct view *view,

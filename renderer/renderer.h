@@ -146,6 +146,12 @@ struct memory_statistics {
     uint64_t bytes;
 };
 
+// Values that were wrong, or more than there is room for, and were clamped or left out.
+struct reject_statistics {
+    const char *name; // such as "triangles_left_out"
+    uint64_t count;
+};
+
 struct frame_statistics {
     uint32_t pass_count;
     struct pass_statistics passes[RENDERER_MAX_PASSES];
@@ -153,6 +159,8 @@ struct frame_statistics {
     struct effect_statistics effects[RENDERER_MAX_EFFECTS];
     uint32_t memory_count;
     struct memory_statistics memory[16];
+    uint32_t reject_count;
+    struct reject_statistics rejects[8];
     double frame_time_ms; // of the newest collected frame
     float exposure;       // scale in use
     uint32_t render_width, render_height;

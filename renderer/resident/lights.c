@@ -166,8 +166,12 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
     bool spot = light->type == SCENE_LIGHT_SPOT && fov < MAX_SPOT_SHADOW_FOV;
     bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
     uint32_t needed = directional || spot ? 1 : 6;
-    if (share_shadow(builder, block) || builder->layers + needed > MAX_SHADOW_LAYERS)
+    if (share_shadow(builder, block))
         return;
+    if (builder->layers + needed > MAX_SHADOW_LAYERS) {
+        resident->counts.unshadowed++;
+        return;
+    }
     builder->owners[builder->layers] = block;
     block->shadow[0] = builder->layers;
     block->shadow[1] = needed;
@@ -195,8 +199,10 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
 static void add_area_light_shadow(struct light_builder *builder, struct area_light_block *light)
 {
     light->shadow[0] = NO_SHADOW;
-    if (builder->layers + 6 > MAX_SHADOW_LAYERS)
+    if (builder->layers + 6 > MAX_SHADOW_LAYERS) {
+        builder->resident->counts.unshadowed++;
         return;
+    }
     light->shadow[0] = builder->layers;
     light->shadow[1] = 6;
     builder->resident->counts.cube_shadows++;
@@ -245,6 +251,7 @@ bool resident_upload_lights(struct resident *resident)
         struct resident_counts *counts = &resident->counts;
         counts->lights = 0;
         counts->ranged_lights = 0;
+        counts->unshadowed = 0;
         counts->flat_shadows = 0;
         counts->cube_shadows = 0;
         resident->directional_light = NO_SHADOW;

@@ -56,6 +56,7 @@ struct resident_counts {
     uint32_t area_lights;
     uint32_t large_area_lights; // of those: see area_lights.c
     uint32_t shadow_layers;
+    uint32_t unshadowed;         // lights that shall cast shadows, but there is no layer left
     uint32_t flat_shadows;       // lights with one view
     uint32_t cube_shadows;       // lights with six
     uint32_t colored_primitives; // with vertex colours other than white

@@ -68,6 +68,7 @@
 #define COUNTER_FREE_SURFELS     3
 #define COUNTER_RETURNED_SURFELS 4
 #define COUNTER_OVERFLOW         5 // bits, as OVERFLOW_ says
+#define COUNTER_CUT              6 // values beyond what half floats hold, since the volume was made
 #define COUNTER_CACHE_LEFT       7 // faces that the newest selection left stale
 #define COUNTER_CACHE_CHANGE     8 // largest relative change of a face this generation (float)
 #define COUNTER_CACHE_TRACED     9

@@ -142,6 +142,18 @@ static void check_finite(struct stability_view *view)
     }
 }
 
+// How many values were cut in voxels, as the statistics tell.
+static void note_cuts(struct stability_view *view)
+{
+    struct stability_run *run = view->run;
+    struct frame_statistics statistics;
+    renderer_view_get_statistics(run->suite->renderer, view->view, &statistics);
+    for (uint32_t i = 0; i < statistics.reject_count; i++)
+        if (strcmp(statistics.rejects[i].name, "voxel_values_cut") == 0 &&
+            statistics.rejects[i].count > run->cut_values)
+            run->cut_values = statistics.rejects[i].count;
+}
+
 // Pixels of FRAME_OUTPUT_LINEAR, which must be finite and not negative, or of bytes over 255.
 static bool take_picture(struct stability_view *view, const struct frame_pixels *pixels)
 {
@@ -185,6 +197,7 @@ enum render_result stability_view_draw(struct stability_view *view,
     bool taken = take_picture(view, &pixels);
     renderer_view_release(renderer, view->view);
     check_finite(view);
+    note_cuts(view);
     if (!taken)
         stability_fail(run, "out of memory");
     return taken ? RENDER_DRAWN : RENDER_FAILED;

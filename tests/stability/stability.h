@@ -59,6 +59,7 @@ struct stability_run {
     char where[160];     // the worst was, or why it failed
     uint32_t frames;     // drawn
     uint64_t bad_values; // not finite, in all resources and frames
+    uint64_t cut_values; // beyond half floats in voxels: the most of a view
     uint32_t picture_count;
     char pictures[STABILITY_MAX_PICTURES][96]; // files in the folder of results
     double seconds;

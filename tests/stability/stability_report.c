@@ -52,6 +52,7 @@ static void add_result(struct stability *suite, const struct stability_run *run,
     cJSON_AddStringToObject(item, "where", run->where);
     cJSON_AddNumberToObject(item, "frames", run->frames);
     cJSON_AddNumberToObject(item, "bad_values", (double)run->bad_values);
+    cJSON_AddNumberToObject(item, "cut_values", (double)run->cut_values);
     cJSON_AddNumberToObject(item, "seconds", round(run->seconds * 100.0) / 100.0);
     cJSON *pictures = cJSON_AddArrayToObject(item, "pictures");
     for (uint32_t i = 0; i < run->picture_count; i++)
