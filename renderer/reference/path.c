@@ -8,10 +8,10 @@
 #include "renderer/reference/sampler.h"
 
 #define RAY_MAX_DISTANCE 1e15f
-// Rays start this far off a surface: some units in the last place of its coordinates, and of the
-// longest rays that may have found it.
-#define OFFSET_OF_PLACE    2e-6f
-#define OFFSET_OF_DIAGONAL 4e-7f
+// Rays start this far off a surface: some units in the last place of its coordinates, and of those
+// that its triangle spans.
+#define OFFSET_OF_PLACE 2e-6f
+#define OFFSET_OF_SPAN  4e-7f
 // Surfaces that one ray may pass through, and vertices that a path may have, unlikely as they are.
 #define MAX_LAYERS   64u
 #define MAX_VERTICES 4096u
@@ -133,17 +133,17 @@ static void add_light(struct path *path, float3 radiance, uint32_t reflections,
     path->layers[layer] += path->throughput * radiance;
 }
 
-static float offset_at(const struct path *path, float3 position)
+static float offset_at(float3 position, float span)
 {
     float largest = max1(fabsf(position[0]), max1(fabsf(position[1]), fabsf(position[2])));
-    return OFFSET_OF_PLACE * largest + OFFSET_OF_DIAGONAL * path->setup->snapshot->diagonal_m;
+    return OFFSET_OF_PLACE * largest + OFFSET_OF_SPAN * span;
 }
 
 // The point just off a surface, on its ray's side (1) or beyond (-1).
-static float3 step_off(const struct path *path, const struct surface *surface, float side)
+static float3 step_off(const struct surface *surface, float side)
 {
     return surface->position +
-           surface->geometric_normal * (side * offset_at(path, surface->position));
+           surface->geometric_normal * (side * offset_at(surface->position, surface->span));
 }
 
 // What the body that the path is in leaves of light over a distance.
@@ -209,7 +209,7 @@ static bool find_surface(struct path *path, struct surface *out_surface)
             return false;
         if (!passes(path, out_surface, layer))
             return true;
-        path->origin = step_off(path, out_surface, -1.0f);
+        path->origin = step_off(out_surface, -1.0f);
     }
     return false;
 }
@@ -237,12 +237,12 @@ static float3 transmittance_to(struct path *path, const struct surface *surface,
     if (!sample->casts_shadow)
         return splat3(1.0f);
     bool beyond = dot3(sample->direction, surface->geometric_normal) < 0.0f;
-    float3 origin = step_off(path, surface, beyond ? -1.0f : 1.0f), along = sample->direction;
+    float3 origin = step_off(surface, beyond ? -1.0f : 1.0f), along = sample->direction;
     struct ray ray = {.max_distance = RAY_MAX_DISTANCE};
     if (isfinite(sample->distance)) {
         // Aimed anew from the shifted origin, so that the ray meets nothing but at its end.
         float3 target = surface->position + sample->direction * sample->distance;
-        along = target + sample->lift * offset_at(path, target) - origin;
+        along = target + sample->lift * offset_at(target, sample->span) - origin;
         ray.max_distance = 1.0f - 1e-5f;
         if (!(dot3(along, sample->direction) > 0.0f))
             return splat3(1.0f);
@@ -303,7 +303,7 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
         choice[0] = lights_are_few(snapshot->lights) ? u[0] : get_1d(path, USE_EMITTER);
         if (lights_sample_emitter(snapshot->lights, snapshot, surface->position, choice[0], u,
                                   &sample) &&
-            sample.distance > 2.0f * offset_at(path, surface->position))
+            sample.distance > 2.0f * offset_at(surface->position, surface->span))
             scatter_light(path, surface, bsdf, &sample, false);
     }
     if (setup->aims_at_environment) {
@@ -364,7 +364,7 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
     path->scattered = true;
     path->spread = path->spread || scattering.density < SPREAD_DENSITY;
     bool reflected = dot3(path->direction, surface->geometric_normal) > 0.0f;
-    path->origin = step_off(path, surface, reflected ? 1.0f : -1.0f);
+    path->origin = step_off(surface, reflected ? 1.0f : -1.0f);
     if (reflected)
         path->reflections++;
     else
