@@ -478,7 +478,7 @@ static bool advance(struct path *path)
 
 static void cast_paths(struct batch *batch, bool coherent)
 {
-    batch->nearest.count = 0;
+    ray_batch_init(&batch->nearest, batch->setup->snapshot->rays, coherent);
     for (uint32_t i = 0; i < batch->active_count; i++) {
         struct path *path = batch->active[i];
         path->slot = i;
@@ -488,22 +488,20 @@ static void cast_paths(struct batch *batch, bool coherent)
         log_ray(batch->rays, &ray, false);
         ray_batch_add(&batch->nearest, &ray);
     }
-    ray_scene_find_all(batch->setup->snapshot->rays, &batch->nearest, coherent);
+    ray_scene_find_all(batch->setup->snapshot->rays, &batch->nearest);
 }
 
 // Adds all light that shadow rays let arrive.
-static void cast_shadows(struct batch *batch, bool coherent)
+static void cast_shadows(struct batch *batch)
 {
     for (uint32_t i = 0; i < AIMS; i++) {
         struct aimed_batch *aims = &batch->aims[i];
         if (aims->rays.count == 0)
             continue;
-        ray_scene_occlude_all(batch->setup->snapshot->rays, &aims->rays, coherent, stops_light,
-                              aims);
+        ray_scene_occlude_all(batch->setup->snapshot->rays, &aims->rays, stops_light, aims);
         for (uint32_t ray = 0; ray < aims->rays.count; ray++)
             if (!ray_batch_is_occluded(&aims->rays, ray))
                 *aims->aimed[ray].layer += aims->aimed[ray].light;
-        aims->rays.count = 0;
     }
 }
 
@@ -513,7 +511,7 @@ static void start_paths(struct batch *batch, const struct path_tile *tile, uint3
 {
     const struct path_setup *setup = batch->setup;
     uint32_t count = tile->width * tile->height;
-    struct sampler_batch samplers;
+    struct sampler_batch samplers = {0};
     struct sampler_numbers numbers;
     for (uint32_t i = 0; i < count; i++) {
         struct path *path = &batch->paths[i];
@@ -550,7 +548,7 @@ static void draw_numbers(struct batch *batch)
     for (uint32_t use = 0; use < PAIRS_OF_VERTEX; use++) {
         if (!(batch->setup->uses & 1u << use))
             continue;
-        struct sampler_batch samplers;
+        struct sampler_batch samplers = {0};
         for (uint32_t i = 0; i < batch->active_count; i++) {
             const struct path *path = batch->active[i];
             sampler_batch_set(&samplers, i, &path->sampler,
@@ -566,21 +564,20 @@ void path_add_samples(const struct path_setup *setup, struct path_rays *rays,
     struct batch batch;
     batch.setup = setup;
     batch.rays = rays;
-    ray_batch_init(&batch.nearest, setup->snapshot->rays);
-    for (uint32_t i = 0; i < AIMS; i++) {
+    for (uint32_t i = 0; i < AIMS; i++)
         batch.aims[i].setup = setup;
-        ray_batch_init(&batch.aims[i].rays, setup->snapshot->rays);
-    }
     start_paths(&batch, tile, sample, layers);
     // Rays from the camera, and from what it sees to a light, go much the same way.
     for (bool coherent = true; batch.active_count > 0; coherent = false) {
         cast_paths(&batch, coherent);
         draw_numbers(&batch);
+        for (uint32_t i = 0; i < AIMS; i++)
+            ray_batch_init(&batch.aims[i].rays, setup->snapshot->rays, coherent);
         uint32_t left = 0;
         for (uint32_t i = 0; i < batch.active_count; i++)
             if (advance(batch.active[i]))
                 batch.active[left++] = batch.active[i];
         batch.active_count = left;
-        cast_shadows(&batch, coherent);
+        cast_shadows(&batch);
     }
 }

@@ -439,33 +439,50 @@ static bool find_nearest(const struct ray_scene *ray_scene, const struct ray *ra
     return out_query->hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-void ray_batch_init(struct ray_batch *batch, const struct ray_scene *ray_scene)
+void ray_batch_init(struct ray_batch *batch, const struct ray_scene *ray_scene, bool coherent)
 {
-    batch->width = ray_scene->packet_width;
+    batch->width = coherent ? ray_scene->packet_width : 1;
     batch->count = 0;
 }
 
-static void cast_packet(RTCScene scene, const int *valid, uint32_t width,
-                        struct RTCIntersectContext *context, float *packet, bool is_shadow)
+static void find_packet(RTCScene scene, const int *valid, uint32_t width,
+                        struct RTCIntersectContext *context, void *packet)
 {
-    void *rays = packet;
-    if (width == 16 && is_shadow) {
-        rtcOccluded16(valid, scene, context, rays);
-    } else if (width == 16) {
-        rtcIntersect16(valid, scene, context, rays);
-    } else if (width == 8 && is_shadow) {
-        rtcOccluded8(valid, scene, context, rays);
-    } else if (width == 8) {
-        rtcIntersect8(valid, scene, context, rays);
-    } else if (is_shadow) {
-        rtcOccluded4(valid, scene, context, rays);
-    } else {
-        rtcIntersect4(valid, scene, context, rays);
+    switch (width) {
+    case 16:
+        rtcIntersect16(valid, scene, context, packet);
+        break;
+    case 8:
+        rtcIntersect8(valid, scene, context, packet);
+        break;
+    case 4:
+        rtcIntersect4(valid, scene, context, packet);
+        break;
+    default:
+        rtcIntersect1(scene, context, packet);
+    }
+}
+
+static void occlude_packet(RTCScene scene, const int *valid, uint32_t width,
+                           struct RTCIntersectContext *context, void *packet)
+{
+    switch (width) {
+    case 16:
+        rtcOccluded16(valid, scene, context, packet);
+        break;
+    case 8:
+        rtcOccluded8(valid, scene, context, packet);
+        break;
+    case 4:
+        rtcOccluded4(valid, scene, context, packet);
+        break;
+    default:
+        rtcOccluded1(scene, context, packet);
     }
 }
 
 // Sets what all rays of a packet have in common.
-static void fill_packet(float *packet, uint32_t width, uint32_t first)
+static inline void fill_packet(float *packet, uint32_t width, uint32_t first)
 {
     uint32_t *words = (uint32_t *)packet;
     for (uint32_t i = 0; i < width; i++) {
@@ -479,75 +496,43 @@ static void fill_packet(float *packet, uint32_t width, uint32_t first)
     }
 }
 
-static void cast_coherent(const struct ray_scene *ray_scene, struct ray_batch *batch,
-                          struct RTCIntersectContext *context, bool is_shadow)
+typedef void packet_function(RTCScene scene, const int *valid, uint32_t width,
+                             struct RTCIntersectContext *context, void *packet);
+
+static inline void cast_all(const struct ray_scene *ray_scene, struct ray_batch *batch,
+                            struct RTCIntersectContext *context, packet_function *cast)
 {
     uint32_t width = batch->width;
-    for (uint32_t first = 0; first < batch->count; first += width) {
+    for (uint32_t i = 0; width == 1 && i < batch->count; i++) {
+        float *ray = ray_batch_fields(batch, i);
+        fill_packet(ray, 1, i);
+        cast(ray_scene->top, NULL, 1, context, ray);
+    }
+    for (uint32_t first = 0; width > 1 && first < batch->count; first += width) {
         _Alignas(64) int valid[16];
         for (uint32_t i = 0; i < width; i++) {
             valid[i] = first + i < batch->count ? -1 : 0;
         }
         float *packet = ray_batch_fields(batch, first);
         fill_packet(packet, width, first);
-        cast_packet(ray_scene->top, valid, width, context, packet, is_shadow);
+        cast(ray_scene->top, valid, width, context, packet);
     }
 }
 
-// Casts a batch's rays one by one.
-static void cast_incoherent(const struct ray_scene *ray_scene, struct ray_batch *batch,
-                            struct RTCIntersectContext *context, bool is_shadow)
-{
-    uint32_t width = batch->width;
-    for (uint32_t i = 0; i < batch->count; i++) {
-        float *fields = ray_batch_fields(batch, i), *hits = fields + (size_t)RAY_HIT * width;
-        struct ray ray = {.max_distance = fields[RAY_DISTANCE * width]};
-        for (uint32_t axis = 0; axis < 3; axis++) {
-            ray.origin[axis] = fields[(RAY_ORIGIN + axis) * width];
-            ray.direction[axis] = fields[(RAY_DIRECTION + axis) * width];
-        }
-        struct RTCRayHit query;
-        fill_ray(&query.ray, &ray);
-        query.ray.id = i;
-        if (is_shadow) {
-            rtcOccluded1(ray_scene->top, context, &query.ray);
-            fields[RAY_DISTANCE * width] = query.ray.tfar;
-            continue;
-        }
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(ray_scene->top, context, &query);
-        fields[RAY_DISTANCE * width] = query.ray.tfar;
-        hits[HIT_U * width] = query.hit.u;
-        hits[HIT_V * width] = query.hit.v;
-        memcpy(&hits[HIT_TRIANGLE * width], &query.hit.primID, sizeof(float));
-        memcpy(&hits[HIT_GEOMETRY * width], &query.hit.geomID, sizeof(float));
-        memcpy(&hits[HIT_INSTANCE * width], &query.hit.instID[0], sizeof(float));
-    }
-}
-
-void ray_scene_find_all(const struct ray_scene *ray_scene, struct ray_batch *batch, bool coherent)
+void ray_scene_find_all(const struct ray_scene *ray_scene, struct ray_batch *batch)
 {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    if (coherent) {
-        cast_coherent(ray_scene, batch, &context, false);
-    } else {
-        cast_incoherent(ray_scene, batch, &context, false);
-    }
+    cast_all(ray_scene, batch, &context, find_packet);
 }
 
 void ray_scene_occlude_all(const struct ray_scene *ray_scene, struct ray_batch *batch,
-                           bool coherent, ray_scene_stops_light *stops_light, void *context)
+                           ray_scene_stops_light *stops_light, void *context)
 {
     struct light_context light = {
         .ray_scene = ray_scene, .stops_light = stops_light, .context = context};
     rtcInitIntersectContext(&light.embree);
-    if (coherent) {
-        cast_coherent(ray_scene, batch, &light.embree, true);
-    } else {
-        cast_incoherent(ray_scene, batch, &light.embree, true);
-    }
+    cast_all(ray_scene, batch, &light.embree, occlude_packet);
 }
 
 bool ray_scene_get_crossing(const struct ray_scene *ray_scene, const struct ray_batch *batch,

@@ -40,8 +40,7 @@ struct ray_crossing {
 typedef bool ray_scene_stops_light(void *context, uint32_t ray,
                                    const struct ray_crossing *crossing);
 
-// Rays to be cast together, and what they have found. Neighbours that go much the same way are cast
-// at little more than the cost of one.
+// Rays to be cast together, and what they have found.
 #define RAY_BATCH_SIZE 64u
 enum ray_batch_field {
     RAY_ORIGIN,
@@ -58,7 +57,7 @@ enum ray_batch_field {
 struct ray_batch {
     // Packets, laid out as Embree's: of each field as many as a packet has rays.
     _Alignas(64) float fields[RAY_BATCH_FIELDS * RAY_BATCH_SIZE];
-    uint32_t width; // rays of a packet, a power of two
+    uint32_t width; // rays of a packet, a power of two; 1: cast one by one
     uint32_t count;
 };
 
@@ -86,8 +85,10 @@ void ray_scene_update_materials(struct ray_scene *ray_scene);
 bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3],
                          const float direction[3], float max_distance, struct ray_hit *out_hit);
 
-// Empties a batch, which is for this ray_scene alone.
-void ray_batch_init(struct ray_batch *batch, const struct ray_scene *ray_scene);
+// Empties a batch, which is for this ray_scene alone. `coherent` says that neighbours in it will go
+// much the same way: packets of them cost little more than one ray, and results differ by rounding
+// at most.
+void ray_batch_init(struct ray_batch *batch, const struct ray_scene *ray_scene, bool coherent);
 
 // The first field of a ray; others follow at multiples of the width.
 static inline float *ray_batch_fields(const struct ray_batch *batch, uint32_t ray)
@@ -114,16 +115,14 @@ static inline bool ray_batch_is_occluded(const struct ray_batch *batch, uint32_t
     return ray_batch_fields(batch, ray)[RAY_DISTANCE * batch->width] < 0.0f;
 }
 
-// For trusted rays, little more than Embree's own cost; `coherent` says that neighbours in the
-// batch go much the same way: that makes it faster, and results differ by rounding at most.
-//
-// The nearest triangle that each ray meets.
-void ray_scene_find_all(const struct ray_scene *ray_scene, struct ray_batch *batch, bool coherent);
+// The nearest triangle that each ray meets. For trusted rays, and little more than Embree's own
+// cost.
+void ray_scene_find_all(const struct ray_scene *ray_scene, struct ray_batch *batch);
 
 // Whether anything opaque lies along each ray, alpha-masked holes aside. Surfaces that let light
 // pass are asked by `stops_light`, and with NULL stop none. Thread-safe between updates.
 void ray_scene_occlude_all(const struct ray_scene *ray_scene, struct ray_batch *batch,
-                           bool coherent, ray_scene_stops_light *stops_light, void *context);
+                           ray_scene_stops_light *stops_light, void *context);
 
 // What a ray of a batch has found. False if nothing.
 bool ray_scene_get_crossing(const struct ray_scene *ray_scene, const struct ray_batch *batch,

@@ -49,9 +49,9 @@ static bool is_occluded(const struct ray_scene *ray_scene, const struct ray *ray
                         ray_scene_stops_light *stops_light, void *context)
 {
     struct ray_batch batch;
-    ray_batch_init(&batch, ray_scene);
+    ray_batch_init(&batch, ray_scene, false);
     ray_batch_add(&batch, ray);
-    ray_scene_occlude_all(ray_scene, &batch, false, stops_light, context);
+    ray_scene_occlude_all(ray_scene, &batch, stops_light, context);
     return ray_batch_is_occluded(&batch, 0);
 }
 
@@ -59,9 +59,9 @@ static bool find(const struct ray_scene *ray_scene, const struct ray *ray,
                  struct ray_crossing *out_crossing)
 {
     struct ray_batch batch;
-    ray_batch_init(&batch, ray_scene);
+    ray_batch_init(&batch, ray_scene, false);
     ray_batch_add(&batch, ray);
-    ray_scene_find_all(ray_scene, &batch, false);
+    ray_scene_find_all(ray_scene, &batch);
     return ray_scene_get_crossing(ray_scene, &batch, 0, out_crossing);
 }
 
@@ -232,9 +232,10 @@ static void test_occlusion_asks_what_lets_light_pass(void **state)
 #define ROW 8
 
 // Rays straight down onto the quad and beside it, in a square of ROW x ROW.
-static void fill_square(const struct ray_scene *ray_scene, uint32_t count, struct ray_batch *batch)
+static void fill_square(const struct ray_scene *ray_scene, uint32_t count, bool coherent,
+                        struct ray_batch *batch)
 {
-    ray_batch_init(batch, ray_scene);
+    ray_batch_init(batch, ray_scene, coherent);
     for (uint32_t i = 0; i < count; i++) {
         float x = -1.155f + 0.33f * (float)(i % ROW), y = -1.155f + 0.33f * (float)(i / ROW);
         const struct ray ray = {{x, y, 5}, {0, 0, -1}, 100};
@@ -273,8 +274,8 @@ static void test_batches_of_any_size_find_what_single_rays_do(void **state)
     for (uint32_t count = 1; count <= RAY_BATCH_SIZE; count++)
         for (int coherent = 0; coherent < 2; coherent++) {
             struct ray_batch batch;
-            fill_square(ray_scene, count, &batch);
-            ray_scene_find_all(ray_scene, &batch, coherent);
+            fill_square(ray_scene, count, coherent, &batch);
+            ray_scene_find_all(ray_scene, &batch);
             for (uint32_t i = 0; i < count; i++) {
                 struct ray_crossing crossing;
                 bool found = ray_scene_get_crossing(ray_scene, &batch, i, &crossing);
@@ -282,12 +283,12 @@ static void test_batches_of_any_size_find_what_single_rays_do(void **state)
                 if (found)
                     stop_some(NULL, i, &crossing);
             }
-            fill_square(ray_scene, count, &batch);
-            ray_scene_occlude_all(ray_scene, &batch, coherent, stop_some, NULL);
+            fill_square(ray_scene, count, coherent, &batch);
+            ray_scene_occlude_all(ray_scene, &batch, stop_some, NULL);
             for (uint32_t i = 0; i < count; i++)
                 assert_int_equal(ray_batch_is_occluded(&batch, i), is_on_quad(i) && i % 3 == 0);
-            fill_square(ray_scene, count, &batch);
-            ray_scene_occlude_all(ray_scene, &batch, coherent, NULL, NULL);
+            fill_square(ray_scene, count, coherent, &batch);
+            ray_scene_occlude_all(ray_scene, &batch, NULL, NULL);
             for (uint32_t i = 0; i < count; i++)
                 assert_false(ray_batch_is_occluded(&batch, i));
         }
