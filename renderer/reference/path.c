@@ -5,7 +5,7 @@
 #include "renderer/reference/bsdf.h"
 #include "renderer/reference/environment.h"
 #include "renderer/reference/lights.h"
-#include "renderer/reference/sampler.h"
+#include "renderer/reference/sampler_batch.h"
 
 #define RAY_MAX_DISTANCE 1e15f
 // Rays start this far off a surface: some units in the last place of its coordinates, and of those
@@ -31,15 +31,16 @@
 // What lets less than this through is opaque.
 #define MIN_TRANSMITTANCE 1e-6f
 
-// Random numbers of a vertex; see sampler.h.
+// Random numbers of a vertex; see sampler.h. Pairs come first.
 enum use {
     USE_LAMP,
     USE_LAMP_POINT,
-    USE_EMITTER,
     USE_EMITTER_POINT,
     USE_ENVIRONMENT,
-    USE_LOBE,
     USE_DIRECTION,
+    PAIRS_OF_VERTEX,
+    USE_EMITTER = PAIRS_OF_VERTEX,
+    USE_LOBE,
     USE_ROULETTE,
     USES_OF_VERTEX
 };
@@ -47,10 +48,14 @@ enum use {
 #define USE_VERTEX  1u
 #define USE_PASSING (1u << 24)
 
+// What a vertex aims at: shadow rays of one kind are cast together.
+enum aim { AIM_LAMP, AIM_EMITTER, AIM_ENVIRONMENT, AIMS };
+
 struct path {
     const struct path_setup *setup;
-    struct path_rays *rays;
+    struct batch *batch;
     float3 *layers;
+    uint32_t slot; // of those that go on
     struct sampler sampler;
     float3 origin;
     float3 direction; // unit
@@ -62,8 +67,35 @@ struct path {
     uint32_t number;      // of the sample, from 1
     uint32_t vertex;      // number of scattering events so far
     uint32_t reflections; // among them
+    uint32_t passed;      // surfaces since the last of them that the ray has passed through
     const struct material *media[MAX_MEDIA];
     uint32_t medium_count;
+};
+
+// Light on its way to a vertex, which a shadow ray decides about.
+struct aimed {
+    float3 *layer;
+    float3 light; // that the layer gets if nothing stops it
+    float3 direction;
+    float transmittance;
+};
+
+struct aimed_batch {
+    struct ray_batch rays;
+    const struct path_setup *setup;
+    struct aimed aimed[RAY_BATCH_SIZE];
+};
+
+// Paths that advance together, one vertex at a time.
+struct batch {
+    const struct path_setup *setup;
+    struct path_rays *rays;
+    struct path paths[PATH_BATCH_SIZE];
+    struct path *active[PATH_BATCH_SIZE]; // those that go on
+    uint32_t active_count;
+    struct sampler_numbers numbers[PAIRS_OF_VERTEX]; // by slot
+    struct ray_batch nearest;
+    struct aimed_batch aims[AIMS];
 };
 
 void path_setup_init(struct path_setup *setup, const struct reference_params *params)
@@ -87,6 +119,12 @@ void path_setup_init(struct path_setup *setup, const struct reference_params *pa
         .finds_light = !by_light_alone,
         .rays_find = !by_light_alone && (emits || shines),
     };
+    bool goes_on = setup->max_bounces > 0 || setup->rays_find || snapshot->has_bodies;
+    if (lights_have_punctual(snapshot->lights))
+        setup->uses |= 1u << USE_LAMP | 1u << USE_LAMP_POINT;
+    setup->uses |= (uint32_t)setup->aims_at_emitters << USE_EMITTER_POINT;
+    setup->uses |= (uint32_t)setup->aims_at_environment << USE_ENVIRONMENT;
+    setup->uses |= (uint32_t)goes_on << USE_DIRECTION;
     for (int axis = 0; axis < 3; axis++)
         setup->eye[axis] = (float)(params->camera.eye[axis] - snapshot->origin[axis]);
     camera_frame_init(&setup->camera, &params->camera);
@@ -94,7 +132,9 @@ void path_setup_init(struct path_setup *setup, const struct reference_params *pa
 
 static void get_2d(const struct path *path, enum use use, float out_u[2])
 {
-    sampler_get_2d(&path->sampler, USE_VERTEX + path->vertex * USES_OF_VERTEX + use, out_u);
+    const struct sampler_numbers *numbers = &path->batch->numbers[use];
+    out_u[0] = numbers->u[0][path->slot];
+    out_u[1] = numbers->u[1][path->slot];
 }
 
 static float get_1d(const struct path *path, enum use use)
@@ -119,9 +159,8 @@ static void log_ray(struct path_rays *rays, const struct ray *ray, bool is_shado
         rays->nearest++;
 }
 
-// Adds radiance that the path carries after so many reflections.
-static void add_light(struct path *path, float3 radiance, uint32_t reflections,
-                      bool from_environment)
+// Where light belongs after so many reflections.
+static float3 *layer_of(const struct path *path, uint32_t reflections, bool from_environment)
 {
     uint32_t layer = REFERENCE_EMISSION;
     if (reflections == 1)
@@ -130,7 +169,7 @@ static void add_light(struct path *path, float3 radiance, uint32_t reflections,
         layer = REFERENCE_FIRST_BOUNCE + reflections - 2;
     if (layer >= path->setup->layer_count)
         layer = path->setup->layer_count - 1;
-    path->layers[layer] += path->throughput * radiance;
+    return &path->layers[layer];
 }
 
 static float offset_at(float3 position, float span)
@@ -159,23 +198,9 @@ static float3 absorbed(const struct path *path, float distance)
     return left;
 }
 
-static bool cast(struct path *path, struct surface *out_surface, float *out_distance)
-{
-    struct ray ray = {.max_distance = RAY_MAX_DISTANCE};
-    store3(ray.origin, path->origin);
-    store3(ray.direction, path->direction);
-    log_ray(path->rays, &ray, false);
-    struct ray_crossing crossing;
-    if (!ray_scene_find(path->setup->snapshot->rays, &ray, &crossing) ||
-        !surface_init(out_surface, path->setup->snapshot, &crossing, path->direction))
-        return false;
-    *out_distance = crossing.distance;
-    return true;
-}
-
 // Lets the ray pass a surface, or be stopped by what covers it, by chance; the path carries the
 // weight of that.
-static bool passes(struct path *path, const struct surface *surface, uint32_t layer)
+static bool passes(struct path *path, const struct surface *surface)
 {
     const struct material *material = surface->material;
     if (surface->is_back && !material->refracts && path->reflections == 0)
@@ -191,51 +216,45 @@ static bool passes(struct path *path, const struct surface *surface, uint32_t la
     float probability = through / (through + stays);
     if (surface->transmission == 0.0f)
         probability = through;
-    float u = sampler_get_1d(&path->sampler, USE_PASSING + path->vertex * MAX_LAYERS + layer);
+    float u =
+        sampler_get_1d(&path->sampler, USE_PASSING + path->vertex * MAX_LAYERS + path->passed);
     bool goes = u < probability;
     path->throughput *=
         goes ? passed * (1.0f / probability) : splat3(surface->coverage / (1.0f - probability));
     return goes;
 }
 
-// The next surface that the path's ray does not pass through.
-static bool find_surface(struct path *path, struct surface *out_surface)
+static bool stops_light(void *context, uint32_t ray, const struct ray_crossing *crossing)
 {
-    for (uint32_t layer = 0; layer < MAX_LAYERS; layer++) {
-        float distance = RAY_MAX_DISTANCE;
-        bool found = cast(path, out_surface, &distance);
-        path->throughput *= absorbed(path, distance);
-        if (!found)
-            return false;
-        if (!passes(path, out_surface, layer))
-            return true;
-        path->origin = step_off(out_surface, -1.0f);
-    }
-    return false;
-}
-
-struct shadow {
-    const struct path *path;
-    float3 direction;
-    float3 transmittance;
-};
-
-static bool stops_light(void *context, const struct ray_crossing *crossing)
-{
-    struct shadow *shadow = context;
+    struct aimed_batch *batch = context;
+    struct aimed *aimed = &batch->aimed[ray];
     struct surface surface;
-    if (!surface_init(&surface, shadow->path->setup->snapshot, crossing, shadow->direction))
+    if (!surface_init(&surface, batch->setup->snapshot, crossing, aimed->direction))
         return false;
-    shadow->transmittance *= surface_passed(&surface);
-    return !(max3(shadow->transmittance) > MIN_TRANSMITTANCE);
+    float3 passed = surface_passed(&surface);
+    aimed->light *= passed;
+    aimed->transmittance *= max3(passed);
+    return !(aimed->transmittance > MIN_TRANSMITTANCE);
 }
 
-// What share of a light's sample reaches a surface.
-static float3 transmittance_to(struct path *path, const struct surface *surface,
-                               const struct light_sample *sample)
+static void add_shadow_ray(struct path *path, const struct ray *ray, enum aim aim, float3 light,
+                           float3 direction, float3 *layer)
 {
-    if (!sample->casts_shadow)
-        return splat3(1.0f);
+    struct aimed_batch *batch = &path->batch->aims[aim];
+    log_ray(path->batch->rays, ray, true);
+    batch->aimed[batch->rays.count] = (struct aimed){layer, light, direction, 1.0f};
+    ray_batch_add(&batch->rays, ray);
+}
+
+// Sends light of a sample towards a surface: what arrives is added to the layer.
+static void send_light(struct path *path, const struct surface *surface,
+                       const struct light_sample *sample, enum aim aim, float3 light, float3 *layer)
+{
+    light *= path->throughput;
+    if (!sample->casts_shadow) {
+        *layer += light;
+        return;
+    }
     bool beyond = dot3(sample->direction, surface->geometric_normal) < 0.0f;
     float3 origin = step_off(surface, beyond ? -1.0f : 1.0f), along = sample->direction;
     struct ray ray = {.max_distance = RAY_MAX_DISTANCE};
@@ -244,22 +263,22 @@ static float3 transmittance_to(struct path *path, const struct surface *surface,
         float3 target = surface->position + sample->direction * sample->distance;
         along = target + sample->lift * offset_at(target, sample->span) - origin;
         ray.max_distance = 1.0f - 1e-5f;
-        if (!(dot3(along, sample->direction) > 0.0f))
-            return splat3(1.0f);
+        if (!(dot3(along, sample->direction) > 0.0f)) {
+            *layer += light;
+            return;
+        }
     }
+    if (!beyond)
+        light *= absorbed(path, sample->distance);
     store3(ray.origin, origin);
     store3(ray.direction, along);
-    log_ray(path->rays, &ray, true);
-    struct shadow shadow = {path, sample->direction, splat3(1.0f)};
-    if (ray_scene_is_occluded(path->setup->snapshot->rays, &ray, stops_light, &shadow))
-        return splat3(0.0f);
-    return beyond ? shadow.transmittance : shadow.transmittance * absorbed(path, sample->distance);
+    add_shadow_ray(path, &ray, aim, light, sample->direction, layer);
 }
 
 // Adds the light of a sample by what the surface scatters of it; aimed samples that rays find as
 // well are weighted against these.
 static void scatter_light(struct path *path, const struct surface *surface, const struct bsdf *bsdf,
-                          const struct light_sample *sample, bool from_environment)
+                          const struct light_sample *sample, enum aim aim)
 {
     struct scattering scattering;
     if (!bsdf_evaluate(bsdf, sample->direction, &scattering))
@@ -273,9 +292,9 @@ static void scatter_light(struct path *path, const struct surface *surface, cons
     float3 light = scattering.share * sample->light * weight;
     if (!(max3(light) > 0.0f))
         return;
-    light *= transmittance_to(path, surface, sample);
     bool reflected = dot3(sample->direction, surface->geometric_normal) > 0.0f;
-    add_light(path, light, path->reflections + reflected, from_environment);
+    send_light(path, surface, sample, aim, light,
+               layer_of(path, path->reflections + reflected, aim == AIM_ENVIRONMENT));
 }
 
 static void aim_at_lights(struct path *path, const struct surface *surface, const struct bsdf *bsdf)
@@ -296,7 +315,7 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
         }
         if (lights_sample_punctual(snapshot->lights, surface->position, surface->normal,
                                    bsdf->p_transmit > 0.0f, choice, u, &sample))
-            scatter_light(path, surface, lobes, &sample, false);
+            scatter_light(path, surface, lobes, &sample, AIM_LAMP);
     }
     if (setup->aims_at_emitters) {
         get_2d(path, USE_EMITTER_POINT, u);
@@ -304,7 +323,7 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
         if (lights_sample_emitter(snapshot->lights, snapshot, surface->position, choice[0], u,
                                   &sample) &&
             sample.distance > 2.0f * offset_at(surface->position, surface->span))
-            scatter_light(path, surface, bsdf, &sample, false);
+            scatter_light(path, surface, bsdf, &sample, AIM_EMITTER);
     }
     if (setup->aims_at_environment) {
         get_2d(path, USE_ENVIRONMENT, u);
@@ -313,7 +332,7 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
                                        .casts_shadow = true};
         sample.density = environment_density(snapshot->environment, sample.direction);
         sample.light = environment_radiance(snapshot->environment, sample.direction);
-        scatter_light(path, surface, bsdf, &sample, true);
+        scatter_light(path, surface, bsdf, &sample, AIM_ENVIRONMENT);
     }
 }
 
@@ -377,7 +396,8 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
         path->throughput *= 1.0f / survival;
     }
     path->vertex++;
-    return survives;
+    path->passed = 0;
+    return survives && path->vertex < MAX_VERTICES;
 }
 
 // Adds light that the path's ray has found, weighted against what aiming at it would have given.
@@ -389,69 +409,175 @@ static void add_found(struct path *path, float3 radiance, float aimed_density,
             return;
         radiance *= power_heuristic(path->density, aimed_density);
     }
-    add_light(path, radiance, path->reflections, from_environment);
+    *layer_of(path, path->reflections, from_environment) += path->throughput * radiance;
 }
 
-static void follow(struct path *path)
+static void find_environment(struct path *path)
+{
+    const struct environment *environment = path->setup->snapshot->environment;
+    if (!environment_shines(environment))
+        return;
+    bool aimed = path->setup->aims_at_environment && path->scattered;
+    add_found(path, environment_radiance(environment, path->direction),
+              aimed ? environment_density(environment, path->direction) : 0.0f, true);
+}
+
+// Adds light that the surface gives to the path, and turns that into the direction of its next ray.
+// False if it ends.
+static bool meet(struct path *path, const struct surface *surface)
 {
     const struct path_setup *setup = path->setup;
     const struct snapshot *snapshot = setup->snapshot;
-    struct surface surface;
+    const struct material *material = surface->material;
+    if (surface->is_back && !material->refracts)
+        return false;
+    if (material->unlit && path->reflections > 0)
+        return false;
+    if (max3(surface->emission) > 0.0f) {
+        bool aimed = setup->aims_at_emitters && path->scattered && material->emits;
+        add_found(path, surface->emission,
+                  aimed ? lights_emitter_density(snapshot->lights, surface, path->from) : 0.0f,
+                  false);
+    }
+    // The last reflection has been: only what goes through bodies matters now.
+    bool reflects = path->reflections == 0 || path->reflections - 1 < setup->max_bounces;
+    if (material->unlit || !(reflects || material->refracts))
+        return false;
     struct bsdf bsdf;
-    while (path->vertex < MAX_VERTICES) {
-        if (!find_surface(path, &surface)) {
-            bool aimed = setup->aims_at_environment && path->scattered;
-            add_found(path, environment_radiance(snapshot->environment, path->direction),
-                      aimed ? environment_density(snapshot->environment, path->direction) : 0.0f,
-                      true);
-            return;
-        }
-        const struct material *material = surface.material;
-        if (surface.is_back && !material->refracts)
-            return;
-        if (material->unlit && path->reflections > 0)
-            return;
-        if (max3(surface.emission) > 0.0f) {
-            bool aimed = setup->aims_at_emitters && path->scattered && material->emits;
-            add_found(path, surface.emission,
-                      aimed ? lights_emitter_density(snapshot->lights, &surface, path->from) : 0.0f,
-                      false);
-        }
-        // The last reflection has been: only what goes through bodies matters now.
-        bool reflects = path->reflections == 0 || path->reflections - 1 < setup->max_bounces;
-        if (material->unlit || !(reflects || material->refracts))
-            return;
-        bsdf_init(&bsdf, &surface, cross_surface(path, &surface, false),
-                  reflects ? BSDF_ALL : BSDF_TRANSMISSION);
-        if (bsdf.p_diffuse + bsdf.p_gloss + bsdf.p_transmit == 0.0f)
-            return;
-        aim_at_lights(path, &surface, &bsdf);
-        bool is_last = path->reflections == setup->max_bounces;
-        if (is_last && !setup->rays_find && !snapshot->has_bodies)
-            return;
-        if (!scatter(path, &surface, &bsdf))
-            return;
+    bsdf_init(&bsdf, surface, cross_surface(path, surface, false),
+              reflects ? BSDF_ALL : BSDF_TRANSMISSION);
+    if (bsdf.p_diffuse + bsdf.p_gloss + bsdf.p_transmit == 0.0f)
+        return false;
+    aim_at_lights(path, surface, &bsdf);
+    bool is_last = path->reflections == setup->max_bounces;
+    if (is_last && !setup->rays_find && !snapshot->has_bodies)
+        return false;
+    return scatter(path, surface, &bsdf);
+}
+
+// Takes a path to what its ray has found. False if it ends there.
+static bool advance(struct path *path)
+{
+    const struct snapshot *snapshot = path->setup->snapshot;
+    const struct ray_batch *batch = &path->batch->nearest;
+    struct ray_crossing crossing;
+    struct surface surface;
+    bool found = ray_scene_get_crossing(snapshot->rays, batch, path->slot, &crossing) &&
+                 surface_init(&surface, snapshot, &crossing, path->direction);
+    if (path->medium_count > 0)
+        path->throughput *= absorbed(path, found ? crossing.distance : RAY_MAX_DISTANCE);
+    if (found && !passes(path, &surface))
+        return meet(path, &surface);
+    if (!found || ++path->passed == MAX_LAYERS) {
+        find_environment(path);
+        return false;
+    }
+    path->origin = step_off(&surface, -1.0f);
+    return true;
+}
+
+static void cast_paths(struct batch *batch, bool coherent)
+{
+    ray_batch_init(&batch->nearest, batch->setup->snapshot->rays, coherent);
+    for (uint32_t i = 0; i < batch->active_count; i++) {
+        struct path *path = batch->active[i];
+        path->slot = i;
+        struct ray ray = {.max_distance = RAY_MAX_DISTANCE};
+        store3(ray.origin, path->origin);
+        store3(ray.direction, path->direction);
+        log_ray(batch->rays, &ray, false);
+        ray_batch_add(&batch->nearest, &ray);
+    }
+    ray_scene_find_all(batch->setup->snapshot->rays, &batch->nearest);
+}
+
+// Adds all light that shadow rays let arrive.
+static void cast_shadows(struct batch *batch)
+{
+    for (uint32_t i = 0; i < AIMS; i++) {
+        struct aimed_batch *aims = &batch->aims[i];
+        if (aims->rays.count == 0)
+            continue;
+        ray_scene_occlude_all(batch->setup->snapshot->rays, &aims->rays, stops_light, aims);
+        for (uint32_t ray = 0; ray < aims->rays.count; ray++)
+            if (!ray_batch_is_occluded(&aims->rays, ray))
+                *aims->aimed[ray].layer += aims->aimed[ray].light;
     }
 }
 
-void path_add_sample(const struct path_setup *setup, struct path_rays *rays, uint32_t x, uint32_t y,
-                     uint32_t sample, float3 *layers)
+// All paths of a tile's pixels.
+static void start_paths(struct batch *batch, const struct path_tile *tile, uint32_t sample,
+                        float3 *layers)
 {
-    struct path path = {
-        .setup = setup,
-        .rays = rays,
-        .layers = layers,
-        .throughput = splat3(1.0f),
-        .origin = setup->eye,
-        .number = sample + 1,
-    };
-    // Even and odd samples are sequences of their own, whose difference tells the noise.
-    sampler_init(&path.sampler, setup->seed, y * setup->width + x, sample & 1u, sample >> 1);
-    float at[2] = {0.5f, 0.5f}, ray[3];
-    if (!setup->pixel_center)
-        sampler_get_2d(&path.sampler, USE_PIXEL, at);
-    camera_ray(&setup->camera, setup->width, setup->height, (float)x + at[0], (float)y + at[1],
-               ray);
-    path.direction = normalize3(load3(ray));
-    follow(&path);
+    const struct path_setup *setup = batch->setup;
+    uint32_t count = tile->width * tile->height;
+    struct sampler_batch samplers = {0};
+    struct sampler_numbers numbers;
+    for (uint32_t i = 0; i < count; i++) {
+        struct path *path = &batch->paths[i];
+        uint32_t x = tile->x + i % tile->width, y = tile->y + i / tile->width;
+        *path = (struct path){
+            .setup = setup,
+            .batch = batch,
+            .layers = layers + (size_t)i * setup->layer_count,
+            .throughput = splat3(1.0f),
+            .origin = setup->eye,
+            .number = sample + 1,
+        };
+        // Even and odd samples are sequences of their own, whose difference tells the noise.
+        sampler_init(&path->sampler, setup->seed, y * setup->width + x, sample & 1u, sample >> 1);
+        sampler_batch_set(&samplers, i, &path->sampler, USE_PIXEL);
+        batch->active[i] = path;
+    }
+    sampler_batch_get_2d(&samplers, count, &numbers);
+    for (uint32_t i = 0; i < count; i++) {
+        float across = setup->pixel_center ? 0.5f : numbers.u[0][i];
+        float down = setup->pixel_center ? 0.5f : numbers.u[1][i];
+        float ray[3];
+        camera_ray(&setup->camera, setup->width, setup->height,
+                   (float)(tile->x + i % tile->width) + across,
+                   (float)(tile->y + i / tile->width) + down, ray);
+        batch->paths[i].direction = normalize3(load3(ray));
+    }
+    batch->active_count = count;
+}
+
+// Random numbers for the next vertex of all paths.
+static void draw_numbers(struct batch *batch)
+{
+    for (uint32_t use = 0; use < PAIRS_OF_VERTEX; use++) {
+        if (!(batch->setup->uses & 1u << use))
+            continue;
+        struct sampler_batch samplers = {0};
+        for (uint32_t i = 0; i < batch->active_count; i++) {
+            const struct path *path = batch->active[i];
+            sampler_batch_set(&samplers, i, &path->sampler,
+                              USE_VERTEX + path->vertex * USES_OF_VERTEX + use);
+        }
+        sampler_batch_get_2d(&samplers, batch->active_count, &batch->numbers[use]);
+    }
+}
+
+void path_add_samples(const struct path_setup *setup, struct path_rays *rays,
+                      const struct path_tile *tile, uint32_t sample, float3 *layers)
+{
+    struct batch batch;
+    batch.setup = setup;
+    batch.rays = rays;
+    for (uint32_t i = 0; i < AIMS; i++)
+        batch.aims[i].setup = setup;
+    start_paths(&batch, tile, sample, layers);
+    // Rays from the camera, and from what it sees to a light, go much the same way.
+    for (bool coherent = true; batch.active_count > 0; coherent = false) {
+        cast_paths(&batch, coherent);
+        draw_numbers(&batch);
+        for (uint32_t i = 0; i < AIMS; i++)
+            ray_batch_init(&batch.aims[i].rays, setup->snapshot->rays, coherent);
+        uint32_t left = 0;
+        for (uint32_t i = 0; i < batch.active_count; i++)
+            if (advance(batch.active[i]))
+                batch.active[left++] = batch.active[i];
+        batch.active_count = left;
+        cast_shadows(&batch);
+    }
 }

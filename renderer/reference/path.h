@@ -32,6 +32,7 @@ struct path_setup {
     bool aims_at_emitters, aims_at_environment;
     bool finds_light; // rays that follow the surface count, too
     bool rays_find;   // and there is light that they could find
+    uint32_t uses;    // of pairs of random numbers at a vertex, as bits
 };
 
 void path_setup_init(struct path_setup *setup, const struct reference_params *params);
@@ -44,8 +45,15 @@ struct path_rays {
     uint64_t log_capacity;
 };
 
-// Adds the radiance of one sample of a pixel to `layers` (layer_count of them), in cd/m^2.
-void path_add_sample(const struct path_setup *setup, struct path_rays *rays, uint32_t x, uint32_t y,
-                     uint32_t sample, float3 *layers);
+// A rectangle of pixels of the picture.
+struct path_tile {
+    uint32_t x, y, width, height; // at most PATH_BATCH_SIZE pixels
+};
+#define PATH_BATCH_SIZE RAY_BATCH_SIZE
+
+// Adds the radiance of one sample of each pixel to `layers` (layer_count of them, pixel by pixel),
+// in cd/m^2. Their paths advance together, so that rays are cast together.
+void path_add_samples(const struct path_setup *setup, struct path_rays *rays,
+                      const struct path_tile *tile, uint32_t sample, float3 *layers);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -38,16 +39,14 @@ static void trace_all(const struct ray_rate *rate, struct path_rays *rays)
     path_setup_init(&setup, &rate->params);
     uint32_t tiles_x = (setup.width + TILE_EDGE - 1) / TILE_EDGE;
     uint32_t tiles_y = (setup.height + TILE_EDGE - 1) / TILE_EDGE;
-    for (uint32_t i = 0; i < tiles_x * tiles_y * TILE_EDGE * TILE_EDGE; i++) {
-        uint32_t tile = i / (TILE_EDGE * TILE_EDGE), within = i % (TILE_EDGE * TILE_EDGE);
-        uint32_t x = tile % tiles_x * TILE_EDGE + within % TILE_EDGE;
-        uint32_t y = tile / tiles_x * TILE_EDGE + within / TILE_EDGE;
-        if (x >= setup.width || y >= setup.height)
-            continue;
-        for (uint32_t sample = 0; sample < rate->samples; sample++) {
-            float3 layers[REFERENCE_MAX_LAYERS] = {0};
-            path_add_sample(&setup, rays, x, y, sample, layers);
-        }
+    float3 layers[TILE_EDGE * TILE_EDGE * REFERENCE_MAX_LAYERS];
+    memset(layers, 0, sizeof(layers)); // what adds up in them does not matter
+    for (uint32_t i = 0; i < tiles_x * tiles_y; i++) {
+        struct path_tile tile = {.x = i % tiles_x * TILE_EDGE, .y = i / tiles_x * TILE_EDGE};
+        tile.width = setup.width - tile.x < TILE_EDGE ? setup.width - tile.x : TILE_EDGE;
+        tile.height = setup.height - tile.y < TILE_EDGE ? setup.height - tile.y : TILE_EDGE;
+        for (uint32_t sample = 0; sample < rate->samples; sample++)
+            path_add_samples(&setup, rays, &tile, sample, layers);
     }
 }
 

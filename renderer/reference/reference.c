@@ -52,8 +52,11 @@ struct reference {
 
 // What a worker has of a tile while it works.
 struct work {
-    uint32_t tile, x, y, width, height, from, to;
+    uint32_t number; // of the tile
+    struct path_tile tile;
+    uint32_t from, to;
     struct path_rays rays;
+    float3 layers[TILE_EDGE * TILE_EDGE * REFERENCE_MAX_LAYERS]; // of one sample
     float sums[TILE_EDGE * TILE_EDGE * (3 * REFERENCE_MAX_LAYERS + 1)];
 };
 
@@ -91,12 +94,17 @@ static float *pixel_sums(const struct reference *reference, uint32_t x, uint32_t
 // Copies a tile's rows from the picture, or back; under the mutex.
 static void copy_sums(const struct reference *reference, struct work *work, bool back)
 {
-    size_t row_floats = (size_t)work->width * reference->pixel_floats;
-    for (uint32_t row = 0; row < work->height; row++) {
-        float *picture = pixel_sums(reference, work->x, work->y + row);
+    size_t row_floats = (size_t)work->tile.width * reference->pixel_floats;
+    for (uint32_t row = 0; row < work->tile.height; row++) {
+        float *picture = pixel_sums(reference, work->tile.x, work->tile.y + row);
         float *own = work->sums + row * row_floats;
         memcpy(back ? picture : own, back ? own : picture, row_floats * sizeof(float));
     }
+}
+
+static uint32_t smaller(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
 }
 
 // Takes the next tile that is below the level and that nobody is at; under the mutex. False if
@@ -113,11 +121,11 @@ static bool take_tile(struct reference *reference, struct work *work)
         tile->busy = true;
         reference->busy_count++;
         const struct path_setup *setup = &reference->setup;
-        work->tile = number;
-        work->x = number % reference->tiles_x * TILE_EDGE;
-        work->y = number / reference->tiles_x * TILE_EDGE;
-        work->width = setup->width - work->x < TILE_EDGE ? setup->width - work->x : TILE_EDGE;
-        work->height = setup->height - work->y < TILE_EDGE ? setup->height - work->y : TILE_EDGE;
+        work->number = number;
+        work->tile.x = number % reference->tiles_x * TILE_EDGE;
+        work->tile.y = number / reference->tiles_x * TILE_EDGE;
+        work->tile.width = smaller(setup->width - work->tile.x, TILE_EDGE);
+        work->tile.height = smaller(setup->height - work->tile.y, TILE_EDGE);
         work->from = tile->samples;
         work->to = reference->level;
         work->rays = (struct path_rays){0};
@@ -127,18 +135,18 @@ static bool take_tile(struct reference *reference, struct work *work)
     return false;
 }
 
-static void add_sample(const struct reference *reference, struct work *work, uint32_t x, uint32_t y,
-                       uint32_t sample, float *sums)
+// Adds the layers of one sample of a pixel to its sums.
+static void add_layers(const struct reference *reference, const float3 *layers, uint32_t sample,
+                       float *sums)
 {
-    const struct path_setup *setup = &reference->setup;
-    float3 layers[REFERENCE_MAX_LAYERS] = {0}, total = splat3(0.0f);
-    path_add_sample(setup, &work->rays, work->x + x, work->y + y, sample, layers);
-    for (uint32_t layer = 0; layer < setup->layer_count; layer++)
+    uint32_t layer_count = reference->setup.layer_count;
+    float3 total = splat3(0.0f);
+    for (uint32_t layer = 0; layer < layer_count; layer++)
         total += layers[layer];
     // What no arithmetic of floats can hold is left out rather than spoils the picture.
     if (!isfinite(total[0]) || !isfinite(total[1]) || !isfinite(total[2]))
         return;
-    for (uint32_t layer = 0; layer < setup->layer_count; layer++)
+    for (uint32_t layer = 0; layer < layer_count; layer++)
         for (uint32_t c = 0; c < 3; c++)
             sums[3 * layer + c] += layers[layer][c];
     if (sample & 1u)
@@ -148,21 +156,24 @@ static void add_sample(const struct reference *reference, struct work *work, uin
 // False if cancelled meanwhile.
 static bool trace_tile(struct reference *reference, struct work *work)
 {
-    for (uint32_t y = 0; y < work->height; y++)
-        for (uint32_t x = 0; x < work->width; x++) {
-            float *sums = work->sums + ((size_t)y * work->width + x) * reference->pixel_floats;
-            for (uint32_t sample = work->from; sample < work->to; sample++)
-                add_sample(reference, work, x, y, sample, sums);
-            if (atomic_load_explicit(&reference->cancelled, memory_order_relaxed))
-                return false;
-        }
+    uint32_t pixels = work->tile.width * work->tile.height;
+    uint32_t layer_count = reference->setup.layer_count;
+    for (uint32_t sample = work->from; sample < work->to; sample++) {
+        memset(work->layers, 0, (size_t)pixels * layer_count * sizeof(work->layers[0]));
+        path_add_samples(&reference->setup, &work->rays, &work->tile, sample, work->layers);
+        for (uint32_t i = 0; i < pixels; i++)
+            add_layers(reference, work->layers + (size_t)i * layer_count, sample,
+                       work->sums + (size_t)i * reference->pixel_floats);
+        if (atomic_load_explicit(&reference->cancelled, memory_order_relaxed))
+            return false;
+    }
     return true;
 }
 
 // Under the mutex.
 static void give_tile_back(struct reference *reference, struct work *work, bool done)
 {
-    struct tile *tile = &reference->tiles[work->tile];
+    struct tile *tile = &reference->tiles[work->number];
     tile->busy = false;
     reference->busy_count--;
     bool was_behind = tile->samples < reference->level;
@@ -174,8 +185,8 @@ static void give_tile_back(struct reference *reference, struct work *work, bool 
     }
     if (tile->samples < reference->level) {
         // Cancelled, or taken for a lower level: somebody is to look at it again.
-        if (work->tile < reference->next_tile)
-            reference->next_tile = work->tile;
+        if (work->number < reference->next_tile)
+            reference->next_tile = work->number;
         pthread_cond_broadcast(&reference->work);
     } else if (was_behind && --reference->behind == 0) {
         advance_level(reference);

@@ -68,26 +68,37 @@ static inline void sampler_init(struct sampler *sampler, uint64_t seed, uint32_t
     sampler->index_reversed = sampler_reverse_bits(index);
 }
 
+static inline uint64_t sampler_key_of(const struct sampler *sampler, uint32_t use)
+{
+    return sampler->key + use * 0x9e3779b97f4a7c15u;
+}
+
 // A number in [0, 1). Each use of a sample has a number of its own.
 static inline float sampler_get_1d(const struct sampler *sampler, uint32_t use)
 {
-    uint64_t key = sampler_mix(sampler->key + use * 0x9e3779b97f4a7c15u);
+    uint64_t key = sampler_mix(sampler_key_of(sampler, use));
     uint32_t index =
         sampler_reverse_bits(sampler_scramble_reversed(sampler->index_reversed, (uint32_t)key));
     return sampler_to_unit(
         sampler_reverse_bits(sampler_scramble_reversed(index, (uint32_t)(key >> 32))));
 }
 
+// By a mixed key.
+static inline void sampler_get_2d_of(uint64_t key, uint32_t index_reversed, float *out_u,
+                                     float *out_v)
+{
+    uint32_t first = (uint32_t)(key >> 32), second = first * 0x9e3779b1u ^ (uint32_t)key;
+    uint32_t index = sampler_reverse_bits(sampler_scramble_reversed(index_reversed, (uint32_t)key));
+    *out_u = sampler_to_unit(sampler_reverse_bits(sampler_scramble_reversed(index, first)));
+    *out_v = sampler_to_unit(sampler_reverse_bits(
+        sampler_scramble_reversed(sampler_sobol_second_reversed(index), second)));
+}
+
 // Two numbers in [0, 1) that are stratified together.
 static inline void sampler_get_2d(const struct sampler *sampler, uint32_t use, float out_u[2])
 {
-    uint64_t key = sampler_mix(sampler->key + use * 0x9e3779b97f4a7c15u);
-    uint32_t first = (uint32_t)(key >> 32), second = first * 0x9e3779b1u ^ (uint32_t)key;
-    uint32_t index =
-        sampler_reverse_bits(sampler_scramble_reversed(sampler->index_reversed, (uint32_t)key));
-    out_u[0] = sampler_to_unit(sampler_reverse_bits(sampler_scramble_reversed(index, first)));
-    out_u[1] = sampler_to_unit(sampler_reverse_bits(
-        sampler_scramble_reversed(sampler_sobol_second_reversed(index), second)));
+    sampler_get_2d_of(sampler_mix(sampler_key_of(sampler, use)), sampler->index_reversed, &out_u[0],
+                      &out_u[1]);
 }
 
 #endif

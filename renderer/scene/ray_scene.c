@@ -1,5 +1,6 @@
 #include "renderer/scene/ray_scene.h"
 
+#include <assert.h>
 #include <embree3/rtcore.h>
 #include <math.h>
 #include <stdlib.h>
@@ -33,11 +34,13 @@ struct ray_scene {
     RTCScene top;
     RTCScene *meshes; // by mesh; NULL where no node uses it
     uint32_t mesh_count;
-    struct filter_data *filters; // by primitive
-    bool *lets_light_pass;       // by material
-    uint32_t *instance_nodes;    // node by instance, which is the geometry's id in `top`
-    float *instance_extents;     // largest coordinate of the instance's mesh
+    struct filter_data *filters;   // by primitive
+    bool *lets_light_pass;         // by material
+    uint32_t *instance_nodes;      // node by instance, which is the geometry's id in `top`
+    uint32_t *instance_primitives; // first of the instance's mesh
+    float *instance_extents;       // largest coordinate of the instance's mesh
     uint32_t instance_count;
+    uint32_t packet_width; // rays that the processor has registers for
 };
 
 static float alpha_at(const struct scene *scene, uint32_t primitive, uint32_t triangle, float u,
@@ -69,47 +72,84 @@ static bool is_hole(const struct filter_data *data, const struct RTCHit *hit)
     return alpha_at(scene, data->primitive, hit->primID, hit->u, hit->v) < material->alpha_cutoff;
 }
 
-// Refuses hits in the holes of alpha-masked materials. Rays are cast one at a time, so that there
-// is one hit here.
+// Fields of a hit, which come as those of rays do (rtcore_ray.h, whose functions are for C++
+// alone).
+enum hit_field { HIT_U = 3, HIT_V, HIT_TRIANGLE, HIT_GEOMETRY, HIT_INSTANCE };
+static_assert(sizeof(struct RTCRay16) == (size_t)RAY_HIT * 16 * sizeof(float), "");
+static_assert(sizeof(struct RTCRayHit16) == (size_t)RAY_BATCH_FIELDS * 16 * sizeof(float), "");
+
+static float get_float(const void *fields, uint32_t count, uint32_t field, uint32_t number)
+{
+    return ((const float *)fields)[field * count + number];
+}
+
+static uint32_t get_uint(const void *fields, uint32_t count, uint32_t field, uint32_t number)
+{
+    return ((const uint32_t *)fields)[field * count + number];
+}
+
+static struct RTCHit get_hit(const void *hits, uint32_t count, uint32_t number)
+{
+    return (struct RTCHit){
+        .u = get_float(hits, count, HIT_U, number),
+        .v = get_float(hits, count, HIT_V, number),
+        .primID = get_uint(hits, count, HIT_TRIANGLE, number),
+        .geomID = get_uint(hits, count, HIT_GEOMETRY, number),
+        .instID = {get_uint(hits, count, HIT_INSTANCE, number)},
+    };
+}
+
+// Refuses hits in the holes of alpha-masked materials.
 static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
 {
-    if (is_hole(arguments->geometryUserPtr, (const struct RTCHit *)arguments->hit)) {
-        arguments->valid[0] = 0;
+    for (uint32_t i = 0; i < arguments->N; i++) {
+        if (!arguments->valid[i]) {
+            continue;
+        }
+        struct RTCHit hit = get_hit(arguments->hit, arguments->N, i);
+        if (is_hole(arguments->geometryUserPtr, &hit)) {
+            arguments->valid[i] = 0;
+        }
     }
 }
 
 static struct ray_crossing crossing_of(const struct ray_scene *ray_scene, const struct RTCHit *hit,
                                        float distance)
 {
-    const struct scene *scene = ray_scene->scene;
-    uint32_t node = ray_scene->instance_nodes[hit->instID[0]];
-    uint32_t mesh = scene->nodes[node].mesh;
     return (struct ray_crossing){
-        .node = node,
-        .primitive = scene->meshes[mesh].primitive_first + hit->geomID,
+        .node = ray_scene->instance_nodes[hit->instID[0]],
+        .primitive = ray_scene->instance_primitives[hit->instID[0]] + hit->geomID,
         .triangle = hit->primID,
         .barycentric = {hit->u, hit->v},
         .distance = distance,
     };
 }
 
-// Refuses what light passes through, besides holes.
-static void filter_occlusion(const struct RTCFilterFunctionNArguments *arguments)
+static bool stops_ray(const struct RTCFilterFunctionNArguments *arguments, uint32_t number)
 {
     const struct filter_data *data = arguments->geometryUserPtr;
-    const struct RTCHit *hit = (const struct RTCHit *)arguments->hit;
-    if (data->is_masked && is_hole(data, hit)) {
-        arguments->valid[0] = 0;
-        return;
+    struct RTCHit hit = get_hit(arguments->hit, arguments->N, number);
+    if (data->is_masked && is_hole(data, &hit)) {
+        return false;
     }
     const struct light_context *light = (const struct light_context *)arguments->context;
     if (!data->lets_light_pass) {
-        return;
+        return true;
     }
-    struct ray_crossing crossing =
-        crossing_of(light->ray_scene, hit, ((const struct RTCRay *)arguments->ray)->tfar);
-    if (!light->stops_light || !light->stops_light(light->context, &crossing)) {
-        arguments->valid[0] = 0;
+    struct ray_crossing crossing = crossing_of(
+        light->ray_scene, &hit, get_float(arguments->ray, arguments->N, RAY_DISTANCE, number));
+    return light->stops_light &&
+           light->stops_light(light->context,
+                              get_uint(arguments->ray, arguments->N, RAY_ID, number), &crossing);
+}
+
+// Refuses what light passes through, besides holes.
+static void filter_occlusion(const struct RTCFilterFunctionNArguments *arguments)
+{
+    for (uint32_t i = 0; i < arguments->N; i++) {
+        if (arguments->valid[i] && !stops_ray(arguments, i)) {
+            arguments->valid[i] = 0;
+        }
     }
 }
 
@@ -192,8 +232,17 @@ static void add_instances(struct ray_scene *ray_scene)
         rtcAttachGeometryByID(ray_scene->top, instance, id);
         rtcReleaseGeometry(instance);
         ray_scene->instance_nodes[id] = node;
+        ray_scene->instance_primitives[id] = scene->meshes[mesh].primitive_first;
         ray_scene->instance_extents[id] = mesh_extent(scene, mesh);
     }
+}
+
+static uint32_t native_width(RTCDevice device)
+{
+    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) {
+        return 16;
+    }
+    return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
 }
 
 struct ray_scene *ray_scene_create(const struct scene *scene)
@@ -215,9 +264,11 @@ struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *para
     ray_scene->filters = calloc(scene->primitive_count + 1, sizeof(*ray_scene->filters));
     ray_scene->lets_light_pass = calloc(scene->material_count + 1, sizeof(bool));
     ray_scene->instance_nodes = calloc(scene->node_count + 1, sizeof(uint32_t));
+    ray_scene->instance_primitives = calloc(scene->node_count + 1, sizeof(uint32_t));
     ray_scene->instance_extents = calloc(scene->node_count + 1, sizeof(float));
     if (!ray_scene->device || !ray_scene->meshes || !ray_scene->filters ||
-        !ray_scene->instance_nodes || !ray_scene->instance_extents || !ray_scene->lets_light_pass) {
+        !ray_scene->instance_nodes || !ray_scene->instance_primitives ||
+        !ray_scene->instance_extents || !ray_scene->lets_light_pass) {
         ray_scene_destroy(&ray_scene);
         return NULL;
     }
@@ -225,6 +276,7 @@ struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *para
         memcpy(ray_scene->lets_light_pass, params->lets_light_pass,
                scene->material_count * sizeof(bool));
     }
+    ray_scene->packet_width = native_width(ray_scene->device);
     ray_scene->top = rtcNewScene(ray_scene->device);
     rtcSetSceneFlags(ray_scene->top, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
     add_instances(ray_scene);
@@ -257,6 +309,7 @@ void ray_scene_destroy(struct ray_scene **ray_scene_slot)
     free(ray_scene->filters);
     free(ray_scene->lets_light_pass);
     free(ray_scene->instance_nodes);
+    free(ray_scene->instance_primitives);
     free(ray_scene->instance_extents);
     free(ray_scene);
 }
@@ -386,27 +439,113 @@ static bool find_nearest(const struct ray_scene *ray_scene, const struct ray *ra
     return out_query->hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-bool ray_scene_find(const struct ray_scene *ray_scene, const struct ray *ray,
-                    struct ray_crossing *out_crossing)
+void ray_batch_init(struct ray_batch *batch, const struct ray_scene *ray_scene, bool coherent)
 {
-    struct RTCRayHit query;
-    if (!find_nearest(ray_scene, ray, &query)) {
-        return false;
-    }
-    *out_crossing = crossing_of(ray_scene, &query.hit, query.ray.tfar);
-    return true;
+    batch->width = coherent ? ray_scene->packet_width : 1;
+    batch->count = 0;
 }
 
-bool ray_scene_is_occluded(const struct ray_scene *ray_scene, const struct ray *ray,
+static void find_packet(RTCScene scene, const int *valid, uint32_t width,
+                        struct RTCIntersectContext *context, void *packet)
+{
+    switch (width) {
+    case 16:
+        rtcIntersect16(valid, scene, context, packet);
+        break;
+    case 8:
+        rtcIntersect8(valid, scene, context, packet);
+        break;
+    case 4:
+        rtcIntersect4(valid, scene, context, packet);
+        break;
+    default:
+        rtcIntersect1(scene, context, packet);
+    }
+}
+
+static void occlude_packet(RTCScene scene, const int *valid, uint32_t width,
+                           struct RTCIntersectContext *context, void *packet)
+{
+    switch (width) {
+    case 16:
+        rtcOccluded16(valid, scene, context, packet);
+        break;
+    case 8:
+        rtcOccluded8(valid, scene, context, packet);
+        break;
+    case 4:
+        rtcOccluded4(valid, scene, context, packet);
+        break;
+    default:
+        rtcOccluded1(scene, context, packet);
+    }
+}
+
+// Sets what all rays of a packet have in common.
+static inline void fill_packet(float *packet, uint32_t width, uint32_t first)
+{
+    uint32_t *words = (uint32_t *)packet;
+    for (uint32_t i = 0; i < width; i++) {
+        packet[RAY_NEAR * width + i] = 0.0f;
+        packet[RAY_TIME * width + i] = 0.0f;
+        words[RAY_MASK * width + i] = UINT32_MAX;
+        words[RAY_ID * width + i] = first + i;
+        words[RAY_FLAGS * width + i] = 0;
+        words[(RAY_HIT + HIT_GEOMETRY) * width + i] = RTC_INVALID_GEOMETRY_ID;
+        words[(RAY_HIT + HIT_INSTANCE) * width + i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+typedef void packet_function(RTCScene scene, const int *valid, uint32_t width,
+                             struct RTCIntersectContext *context, void *packet);
+
+static inline void cast_all(const struct ray_scene *ray_scene, struct ray_batch *batch,
+                            struct RTCIntersectContext *context, packet_function *cast)
+{
+    uint32_t width = batch->width;
+    for (uint32_t i = 0; width == 1 && i < batch->count; i++) {
+        float *ray = ray_batch_fields(batch, i);
+        fill_packet(ray, 1, i);
+        cast(ray_scene->top, NULL, 1, context, ray);
+    }
+    for (uint32_t first = 0; width > 1 && first < batch->count; first += width) {
+        _Alignas(64) int valid[16];
+        for (uint32_t i = 0; i < width; i++) {
+            valid[i] = first + i < batch->count ? -1 : 0;
+        }
+        float *packet = ray_batch_fields(batch, first);
+        fill_packet(packet, width, first);
+        cast(ray_scene->top, valid, width, context, packet);
+    }
+}
+
+void ray_scene_find_all(const struct ray_scene *ray_scene, struct ray_batch *batch)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    cast_all(ray_scene, batch, &context, find_packet);
+}
+
+void ray_scene_occlude_all(const struct ray_scene *ray_scene, struct ray_batch *batch,
                            ray_scene_stops_light *stops_light, void *context)
 {
-    struct RTCRay query;
-    fill_ray(&query, ray);
     struct light_context light = {
         .ray_scene = ray_scene, .stops_light = stops_light, .context = context};
     rtcInitIntersectContext(&light.embree);
-    rtcOccluded1(ray_scene->top, &light.embree, &query);
-    return query.tfar < 0.0f; // Embree's sign of a hit: minus infinity
+    cast_all(ray_scene, batch, &light.embree, occlude_packet);
+}
+
+bool ray_scene_get_crossing(const struct ray_scene *ray_scene, const struct ray_batch *batch,
+                            uint32_t ray, struct ray_crossing *out_crossing)
+{
+    uint32_t width = batch->width;
+    const float *fields = ray_batch_fields(batch, ray);
+    struct RTCHit hit = get_hit(fields + (size_t)RAY_HIT * width, width, 0);
+    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        return false;
+    }
+    *out_crossing = crossing_of(ray_scene, &hit, fields[RAY_DISTANCE * width]);
+    return true;
 }
 
 uint64_t ray_scene_cast_all(const struct ray_scene *ray_scene, const struct ray_load *rays,

@@ -2,6 +2,8 @@
 #ifndef VOXCAST_RENDERER_SCENE_RAY_SCENE_H
 #define VOXCAST_RENDERER_SCENE_RAY_SCENE_H
 
+#include <stddef.h>
+
 #include "renderer/scene/scene.h"
 
 struct ray_scene;
@@ -33,9 +35,31 @@ struct ray_crossing {
     float distance; // in units of the direction's length
 };
 
-// Whether a triangle stops the light of an occlusion query; called for those of materials that let
-// light pass, in any order.
-typedef bool ray_scene_stops_light(void *context, const struct ray_crossing *crossing);
+// Whether a triangle stops the light of an occlusion query's ray (0 unless there are many); called
+// for those of materials that let light pass, in any order.
+typedef bool ray_scene_stops_light(void *context, uint32_t ray,
+                                   const struct ray_crossing *crossing);
+
+// Rays to be cast together, and what they have found.
+#define RAY_BATCH_SIZE 64u
+enum ray_batch_field {
+    RAY_ORIGIN,
+    RAY_NEAR = 3,
+    RAY_DIRECTION,
+    RAY_TIME = 7,
+    RAY_DISTANCE,
+    RAY_MASK,
+    RAY_ID,
+    RAY_FLAGS,
+    RAY_HIT,
+    RAY_BATCH_FIELDS = 20
+};
+struct ray_batch {
+    // Packets, laid out as Embree's: of each field as many as a packet has rays.
+    _Alignas(64) float fields[RAY_BATCH_FIELDS * RAY_BATCH_SIZE];
+    uint32_t width; // rays of a packet, a power of two; 1: cast one by one
+    uint32_t count;
+};
 
 struct ray_scene_params {
     const struct scene *scene;
@@ -61,14 +85,48 @@ void ray_scene_update_materials(struct ray_scene *ray_scene);
 bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3],
                          const float direction[3], float max_distance, struct ray_hit *out_hit);
 
-// The same for trusted rays: the nearest triangle, and little more than Embree's own cost.
-bool ray_scene_find(const struct ray_scene *ray_scene, const struct ray *ray,
-                    struct ray_crossing *out_crossing);
+// Empties a batch, which is for this ray_scene alone. `coherent` says that neighbours in it will go
+// much the same way: packets of them cost little more than one ray, and results differ by rounding
+// at most.
+void ray_batch_init(struct ray_batch *batch, const struct ray_scene *ray_scene, bool coherent);
 
-// Whether anything opaque lies along the ray, alpha-masked holes aside. Surfaces that let light
+// The first field of a ray; others follow at multiples of the width.
+static inline float *ray_batch_fields(const struct ray_batch *batch, uint32_t ray)
+{
+    uint32_t within = ray & (batch->width - 1);
+    return (float *)batch->fields + (size_t)(RAY_BATCH_FIELDS * (ray - within) + within);
+}
+
+// The batch holds less than RAY_BATCH_SIZE.
+static inline void ray_batch_add(struct ray_batch *batch, const struct ray *ray)
+{
+    uint32_t width = batch->width;
+    float *fields = ray_batch_fields(batch, batch->count++);
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        fields[(RAY_ORIGIN + axis) * width] = ray->origin[axis];
+        fields[(RAY_DIRECTION + axis) * width] = ray->direction[axis];
+    }
+    fields[RAY_DISTANCE * width] = ray->max_distance;
+}
+
+// After ray_scene_occlude_all(). Embree's sign of a hit is minus infinity.
+static inline bool ray_batch_is_occluded(const struct ray_batch *batch, uint32_t ray)
+{
+    return ray_batch_fields(batch, ray)[RAY_DISTANCE * batch->width] < 0.0f;
+}
+
+// The nearest triangle that each ray meets. For trusted rays, and little more than Embree's own
+// cost.
+void ray_scene_find_all(const struct ray_scene *ray_scene, struct ray_batch *batch);
+
+// Whether anything opaque lies along each ray, alpha-masked holes aside. Surfaces that let light
 // pass are asked by `stops_light`, and with NULL stop none. Thread-safe between updates.
-bool ray_scene_is_occluded(const struct ray_scene *ray_scene, const struct ray *ray,
+void ray_scene_occlude_all(const struct ray_scene *ray_scene, struct ray_batch *batch,
                            ray_scene_stops_light *stops_light, void *context);
+
+// What a ray of a batch has found. False if nothing.
+bool ray_scene_get_crossing(const struct ray_scene *ray_scene, const struct ray_batch *batch,
+                            uint32_t ray, struct ray_crossing *out_crossing);
 
 // Rays for measuring how fast Embree alone is on this scene: nearest hits, or occlusion.
 struct ray_load {

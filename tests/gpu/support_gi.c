@@ -118,23 +118,40 @@ static double now_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-struct test_picture gi_draw(struct scene *scene, const struct frame_params *params)
+struct view *gi_show(struct scene *scene)
 {
-    struct renderer *renderer = test_renderer();
     struct error error = {""};
-    double start_s = now_s();
-    if (!renderer_set_scene(renderer, scene, &error))
+    if (!renderer_set_scene(test_renderer(), scene, &error))
         fail_msg("%s", error.message);
-    struct view *view = renderer_view_create(renderer);
+    struct view *view = renderer_view_create(test_renderer());
     assert_non_null(view);
+    return view;
+}
+
+struct test_picture gi_draw_in(struct view *view, const struct frame_params *params)
+{
     struct test_picture picture = {0};
-    uint32_t frames = gi_converge(renderer, view, params, &picture);
-    renderer_view_destroy(renderer, &view);
-    renderer_set_scene(renderer, NULL, &error);
+    double start_s = now_s();
+    uint32_t frames = gi_converge(test_renderer(), view, params, &picture);
     if (frames == 0)
-        fail_msg("%s cannot be drawn", scene->name);
+        fail_msg("the scene cannot be drawn");
     if (frames > 1)
         print_message("      %u frames in %.1f s\n", frames, now_s() - start_s);
+    return picture;
+}
+
+void gi_hide(struct view **view)
+{
+    struct error error;
+    renderer_view_destroy(test_renderer(), view);
+    renderer_set_scene(test_renderer(), NULL, &error);
+}
+
+struct test_picture gi_draw(struct scene *scene, const struct frame_params *params)
+{
+    struct view *view = gi_show(scene);
+    struct test_picture picture = gi_draw_in(view, params);
+    gi_hide(&view);
     return picture;
 }
 

@@ -45,6 +45,12 @@ uint32_t gi_converge(struct renderer *renderer, struct view *view,
 // of bytes as floats 0..255 for RGBA8. Fails the test if the scene cannot be drawn.
 struct test_picture gi_draw(struct scene *scene, const struct frame_params *params);
 
+// The same in two steps, so that pictures of one scene share its voxels: a view of a scene that is
+// shown by gi_show(), until gi_hide().
+struct view *gi_show(struct scene *scene);
+struct test_picture gi_draw_in(struct view *view, const struct frame_params *params);
+void gi_hide(struct view **view);
+
 void gi_picture_finish(struct test_picture *picture);
 
 // Mean of red, green and blue.

@@ -63,7 +63,9 @@ static double room_mean(const struct gi_rooms_params *rooms, uint32_t room, enum
 static void check_walls_of_turn(struct gi_report *report, enum gi_method method, size_t turn,
                                 int wall_voxels)
 {
-    double edge_m = voxel_edge_m(turns_rad[turn]), lit = 0.0;
+    // The lit room hardly depends on the wall.
+    static double lit_means[GI_METHOD_COUNT][3];
+    double *lit = &lit_means[method][turn], edge_m = voxel_edge_m(turns_rad[turn]);
     double nothing = turn == 0 ? NOTHING : TURNED_NOTHING;
     double allowed = wall_voxels == 1 ? ONE_VOXEL_SHARE : nothing;
     for (size_t offset = 0; offset < 3; offset++) {
@@ -73,15 +75,14 @@ static void check_walls_of_turn(struct gi_report *report, enum gi_method method,
         struct gi_rooms_params rooms = {.wall_m = (float)(wall_voxels * edge_m),
                                         .offset_m = (float)(offsets_voxels[offset] * edge_m),
                                         .turn_rad = turns_rad[turn]};
-        // The lit room hardly depends on the wall.
-        if (lit == 0.0)
-            lit = room_mean(&rooms, 0, method);
-        double dark = room_mean(&rooms, 1, method), share = fabs(dark) / lit;
-        gi_check(report, lit > 0.0 && share < allowed,
+        if (*lit == 0.0)
+            *lit = room_mean(&rooms, 0, method);
+        double dark = room_mean(&rooms, 1, method), share = fabs(dark) / *lit;
+        gi_check(report, *lit > 0.0 && share < allowed,
                  "%s, wall of %d voxels, offset %g voxels, turn %g: lit %.5g dark %.3g share %.2e "
                  "(below %g)",
                  gi_method_names[method], wall_voxels, (double)offsets_voxels[offset],
-                 (double)turns_rad[turn], lit, dark, share, allowed);
+                 (double)turns_rad[turn], *lit, dark, share, allowed);
     }
 }
 

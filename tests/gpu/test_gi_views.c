@@ -58,11 +58,12 @@ static bool is_plain(const struct test_picture *picture, float value)
     return true;
 }
 
-static void check_view(struct gi_report *report, struct scene *scene, enum gi_method method,
-                       enum debug_view view)
+static void check_view(struct gi_report *report, struct view *drawn,
+                       const struct frame_params *params)
 {
-    struct frame_params params = view_params(scene, method, view);
-    struct test_picture picture = gi_draw(scene, &params);
+    enum gi_method method = params->settings.gi_method;
+    enum debug_view view = params->debug_view;
+    struct test_picture picture = gi_draw_in(drawn, params);
     bool finite;
     double lit = lit_share(&picture, &finite);
     const char *method_name = gi_method_names[method];
@@ -81,9 +82,15 @@ static void test_every_view_is_finite(void **state)
     (void)state;
     struct gi_report report = {0};
     struct scene *scene = load_scene("cornell");
-    for (int method = 0; method < GI_METHOD_REFERENCE; method++)
-        for (int view = 0; view < DEBUG_VIEW_COUNT; view++)
-            check_view(&report, scene, (enum gi_method)method, (enum debug_view)view);
+    for (int method = 0; method < GI_METHOD_REFERENCE; method++) {
+        struct view *drawn = gi_show(scene);
+        for (int view = 0; view < DEBUG_VIEW_COUNT; view++) {
+            struct frame_params params =
+                view_params(scene, (enum gi_method)method, (enum debug_view)view);
+            check_view(&report, drawn, &params);
+        }
+        gi_hide(&drawn);
+    }
     scene_destroy(&scene);
     gi_report_finish(&report);
 }
@@ -94,20 +101,24 @@ static void test_every_level_is_finite(void **state)
     (void)state;
     struct gi_report report = {0};
     struct scene *scene = load_scene("cornell");
-    for (uint32_t m = 0; m < GI_PROVED_METHODS; m++)
-        for (int view = DEBUG_VIEW_VOXEL_OPACITY; view <= (int)DEBUG_VIEW_VOXEL_IRRADIANCE; view++)
-            for (uint32_t level = 1; level <= 9; level *= 3) {
+    for (uint32_t m = 0; m < GI_PROVED_METHODS; m++) {
+        struct view *drawn = gi_show(scene);
+        for (uint32_t level = 1; level <= 9; level *= 3)
+            for (int view = DEBUG_VIEW_VOXEL_OPACITY; view <= (int)DEBUG_VIEW_VOXEL_IRRADIANCE;
+                 view++) {
                 struct frame_params params =
                     view_params(scene, gi_proved_methods[m], (enum debug_view)view);
                 params.debug_level = level;
                 params.settings.voxel_directions = level == 3 ? VOXEL_ISOTROPIC : VOXEL_ANISOTROPIC;
-                struct test_picture picture = gi_draw(scene, &params);
+                struct test_picture picture = gi_draw_in(drawn, &params);
                 bool finite;
                 double lit = lit_share(&picture, &finite);
                 gi_check(&report, finite && lit > 0.1, "%s, %s, level %u: %.3f is lit",
                          gi_method_names[gi_proved_methods[m]], debug_view_names[view], level, lit);
                 gi_picture_finish(&picture);
             }
+        gi_hide(&drawn);
+    }
     scene_destroy(&scene);
     gi_report_finish(&report);
 }
@@ -136,10 +147,11 @@ static void test_albedo_shows_the_walls(void **state)
     };
     struct gi_report report = {0};
     struct scene *scene = load_scene("cornell");
+    struct view *view = gi_show(scene);
     for (size_t i = 0; i < sizeof(walls) / sizeof(walls[0]); i++) {
         struct frame_params params = view_params(scene, GI_METHOD_GRID, DEBUG_VIEW_VOXEL_ALBEDO);
         params.debug_face = walls[i].face;
-        struct test_picture picture = gi_draw(scene, &params);
+        struct test_picture picture = gi_draw_in(view, &params);
         const float *rgb = pixel_at(&picture, walls[i].x, walls[i].y);
         bool much[3] = {walls[i].red, walls[i].green, walls[i].blue};
         bool fits = true;
@@ -149,6 +161,7 @@ static void test_albedo_shows_the_walls(void **state)
                  (double)rgb[0], (double)rgb[1], (double)rgb[2]);
         gi_picture_finish(&picture);
     }
+    gi_hide(&view);
     scene_destroy(&scene);
     gi_report_finish(&report);
 }
@@ -207,18 +220,20 @@ static void test_indirect_light_alone_is_the_difference(void **state)
         struct frame_params params = view_params(scene, gi_proved_methods[m], DEBUG_VIEW_FINAL);
         params.settings.indirect_specular = false;
         double with[3], without[3], alone[3];
-        struct test_picture picture = gi_draw(scene, &params);
+        struct view *view = gi_show(scene);
+        struct test_picture picture = gi_draw_in(view, &params);
         gi_mean(picture.pixels, WIDTH, HEIGHT, with);
         gi_picture_finish(&picture);
         params.settings.indirect_intensity = 0.0f;
-        picture = gi_draw(scene, &params);
+        picture = gi_draw_in(view, &params);
         gi_mean(picture.pixels, WIDTH, HEIGHT, without);
         gi_picture_finish(&picture);
         params.settings.indirect_intensity = 1.0f;
         params.debug_view = DEBUG_VIEW_INDIRECT_DIFFUSE;
-        picture = gi_draw(scene, &params);
+        picture = gi_draw_in(view, &params);
         gi_mean(picture.pixels, WIDTH, HEIGHT, alone);
         gi_picture_finish(&picture);
+        gi_hide(&view);
         for (int c = 0; c < 3; c++)
             gi_check_ratio(&report, alone[c], with[c] - without[c], 0.01, "%s, channel %d alone",
                            gi_method_names[gi_proved_methods[m]], c);

@@ -44,6 +44,27 @@ static struct scene *make_quad(const struct scene_material *material)
     return scene;
 }
 
+// By batches of one ray.
+static bool is_occluded(const struct ray_scene *ray_scene, const struct ray *ray,
+                        ray_scene_stops_light *stops_light, void *context)
+{
+    struct ray_batch batch;
+    ray_batch_init(&batch, ray_scene, false);
+    ray_batch_add(&batch, ray);
+    ray_scene_occlude_all(ray_scene, &batch, stops_light, context);
+    return ray_batch_is_occluded(&batch, 0);
+}
+
+static bool find(const struct ray_scene *ray_scene, const struct ray *ray,
+                 struct ray_crossing *out_crossing)
+{
+    struct ray_batch batch;
+    ray_batch_init(&batch, ray_scene, false);
+    ray_batch_add(&batch, ray);
+    ray_scene_find_all(ray_scene, &batch);
+    return ray_scene_get_crossing(ray_scene, &batch, 0, out_crossing);
+}
+
 static bool cast_down(const struct ray_scene *ray_scene, float x, float y, struct ray_hit *out_hit)
 {
     return ray_scene_intersect(ray_scene, (float[3]){x, y, 5}, (float[3]){0, 0, -2}, 100, out_hit);
@@ -146,8 +167,8 @@ static void test_holes_of_masks(void **state)
     // Shadows have the same holes.
     const struct ray through = {{-0.5f, 0.1f, 5}, {0, 0, -1}, 100};
     const struct ray blocked = {{0.5f, 0.1f, 5}, {0, 0, -1}, 100};
-    assert_false(ray_scene_is_occluded(ray_scene, &through, NULL, NULL));
-    assert_true(ray_scene_is_occluded(ray_scene, &blocked, NULL, NULL));
+    assert_false(is_occluded(ray_scene, &through, NULL, NULL));
+    assert_true(is_occluded(ray_scene, &blocked, NULL, NULL));
     ray_scene_destroy(&ray_scene);
     scene_destroy(&scene);
 }
@@ -158,8 +179,9 @@ struct asked {
     bool stops;
 };
 
-static bool note_crossing(void *context, const struct ray_crossing *crossing)
+static bool note_crossing(void *context, uint32_t ray, const struct ray_crossing *crossing)
 {
+    (void)ray;
     struct asked *asked = context;
     asked->count++;
     asked->last = *crossing;
@@ -181,21 +203,21 @@ static void test_occlusion_asks_what_lets_light_pass(void **state)
             &(struct ray_scene_params){.scene = scene, .lets_light_pass = lets_light_pass});
         assert_non_null(ray_scene);
         struct asked asked = {.stops = false};
-        assert_true(ray_scene_is_occluded(ray_scene, &ray, note_crossing, &asked) == !passes);
+        assert_true(is_occluded(ray_scene, &ray, note_crossing, &asked) == !passes);
         assert_int_equal(asked.count, passes);
-        assert_true(ray_scene_is_occluded(ray_scene, &ray, NULL, NULL) == !passes);
+        assert_true(is_occluded(ray_scene, &ray, NULL, NULL) == !passes);
         asked = (struct asked){.stops = true};
-        assert_true(ray_scene_is_occluded(ray_scene, &ray, note_crossing, &asked));
+        assert_true(is_occluded(ray_scene, &ray, note_crossing, &asked));
         assert_int_equal(asked.count, passes);
-        assert_false(ray_scene_is_occluded(ray_scene, &beside, note_crossing, &asked));
-        assert_false(ray_scene_is_occluded(ray_scene, &shorter, note_crossing, &asked));
+        assert_false(is_occluded(ray_scene, &beside, note_crossing, &asked));
+        assert_false(is_occluded(ray_scene, &shorter, note_crossing, &asked));
         assert_int_equal(asked.count, passes);
         // Nearest hits are found in any case.
         struct ray_crossing crossing;
-        assert_true(ray_scene_find(ray_scene, &ray, &crossing));
+        assert_true(find(ray_scene, &ray, &crossing));
         assert_float_equal(crossing.distance, 2.5f, TOLERANCE);
         assert_float_equal(crossing.barycentric[0], 0.375f, TOLERANCE);
-        assert_false(ray_scene_find(ray_scene, &shorter, &crossing));
+        assert_false(find(ray_scene, &shorter, &crossing));
         if (passes) {
             assert_float_equal(asked.last.distance, 2.5f, TOLERANCE);
             assert_float_equal(asked.last.barycentric[1], 0.375f, TOLERANCE);
@@ -204,6 +226,73 @@ static void test_occlusion_asks_what_lets_light_pass(void **state)
         assert_int_equal(ray_scene_cast_all(ray_scene, load, 3), 1);
         ray_scene_destroy(&ray_scene);
     }
+    scene_destroy(&scene);
+}
+
+#define ROW 8
+
+// Rays straight down onto the quad and beside it, in a square of ROW x ROW.
+static void fill_square(const struct ray_scene *ray_scene, uint32_t count, bool coherent,
+                        struct ray_batch *batch)
+{
+    ray_batch_init(batch, ray_scene, coherent);
+    for (uint32_t i = 0; i < count; i++) {
+        float x = -1.155f + 0.33f * (float)(i % ROW), y = -1.155f + 0.33f * (float)(i / ROW);
+        const struct ray ray = {{x, y, 5}, {0, 0, -1}, 100};
+        ray_batch_add(batch, &ray);
+    }
+}
+
+static bool is_on_quad(uint32_t i)
+{
+    return i % ROW > 0 && i % ROW < ROW - 1 && i / ROW > 0 && i / ROW < ROW - 1;
+}
+
+// Stops every third ray, and checks which one it is asked about.
+static bool stop_some(void *context, uint32_t ray, const struct ray_crossing *crossing)
+{
+    (void)context;
+    float x = -1.155f + 0.33f * (float)(ray % ROW), y = -1.155f + 0.33f * (float)(ray / ROW);
+    float u = crossing->barycentric[0], v = crossing->barycentric[1];
+    // Corners (-1,-1), (1,-1), (1,1) or (-1,-1), (1,1), (-1,1).
+    bool first = crossing->triangle == 0;
+    assert_float_equal(first ? u + v : u, (x + 1) / 2, TOLERANCE);
+    assert_float_equal(first ? v : u + v, (y + 1) / 2, TOLERANCE);
+    assert_float_equal(crossing->distance, 5, TOLERANCE);
+    return ray % 3 == 0;
+}
+
+static void test_batches_of_any_size_find_what_single_rays_do(void **state)
+{
+    (void)state;
+    struct scene_material material;
+    scene_material_init(&material, "pane");
+    struct scene *scene = make_quad(&material);
+    const bool lets_light_pass[1] = {true};
+    struct ray_scene *ray_scene = ray_scene_create_for_light(
+        &(struct ray_scene_params){.scene = scene, .lets_light_pass = lets_light_pass});
+    for (uint32_t count = 1; count <= RAY_BATCH_SIZE; count++)
+        for (int coherent = 0; coherent < 2; coherent++) {
+            struct ray_batch batch;
+            fill_square(ray_scene, count, coherent, &batch);
+            ray_scene_find_all(ray_scene, &batch);
+            for (uint32_t i = 0; i < count; i++) {
+                struct ray_crossing crossing;
+                bool found = ray_scene_get_crossing(ray_scene, &batch, i, &crossing);
+                assert_int_equal(found, is_on_quad(i));
+                if (found)
+                    stop_some(NULL, i, &crossing);
+            }
+            fill_square(ray_scene, count, coherent, &batch);
+            ray_scene_occlude_all(ray_scene, &batch, stop_some, NULL);
+            for (uint32_t i = 0; i < count; i++)
+                assert_int_equal(ray_batch_is_occluded(&batch, i), is_on_quad(i) && i % 3 == 0);
+            fill_square(ray_scene, count, coherent, &batch);
+            ray_scene_occlude_all(ray_scene, &batch, NULL, NULL);
+            for (uint32_t i = 0; i < count; i++)
+                assert_false(ray_batch_is_occluded(&batch, i));
+        }
+    ray_scene_destroy(&ray_scene);
     scene_destroy(&scene);
 }
 
@@ -269,6 +358,7 @@ int main(void)
         cmocka_unit_test(test_placement_and_visibility),
         cmocka_unit_test(test_holes_of_masks),
         cmocka_unit_test(test_occlusion_asks_what_lets_light_pass),
+        cmocka_unit_test(test_batches_of_any_size_find_what_single_rays_do),
         cmocka_unit_test(test_arguments_that_are_not_finite),
         cmocka_unit_test(test_empty_scene),
         cmocka_unit_test(test_cornell_box),

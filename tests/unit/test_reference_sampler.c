@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "renderer/reference/sampler.h"
+#include "renderer/reference/sampler_batch.h"
 
 #define LOG2_POINTS 8u
 #define POINTS      (1u << LOG2_POINTS)
@@ -100,6 +100,26 @@ static void test_points_integrate_better_than_chance(void **state)
     assert_true(sqrt(squared) < 0.0062 / 20.0);
 }
 
+static void test_many_at_once_are_the_same_numbers(void **state)
+{
+    (void)state;
+    for (uint32_t count = 1; count <= SAMPLER_BATCH_SIZE; count++) {
+        struct sampler samplers[SAMPLER_BATCH_SIZE];
+        struct sampler_batch batch = {0};
+        struct sampler_numbers numbers;
+        for (uint32_t i = 0; i < count; i++) {
+            sampler_init(&samplers[i], 7, 1000 * i, i & 1u, 100 + i * count);
+            sampler_batch_set(&batch, i, &samplers[i], 3 * i);
+        }
+        sampler_batch_get_2d(&batch, count, &numbers);
+        for (uint32_t i = 0; i < count; i++) {
+            float u[2];
+            sampler_get_2d(&samplers[i], 3 * i, u);
+            assert_true(numbers.u[0][i] == u[0] && numbers.u[1][i] == u[1]);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -107,6 +127,7 @@ int main(void)
         cmocka_unit_test(test_single_numbers_are_stratified),
         cmocka_unit_test(test_uses_and_pixels_are_independent),
         cmocka_unit_test(test_points_integrate_better_than_chance),
+        cmocka_unit_test(test_many_at_once_are_the_same_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
