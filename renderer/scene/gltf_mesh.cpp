@@ -191,13 +191,16 @@ static void read_uv(gltf_import &import, const gltf_primitive &primitive, uint32
     for (uint32_t i = 0; i < mesh.vertex_count; i++) {
         float *uv = mesh.vertices[i].uv[set];
         gltf_read_element(elements, primitive.used[i], uv, 2);
+        bool mended = false;
         for (int axis = 0; axis < 2; axis++) {
             if (!(std::fabs(uv[axis]) <= GLTF_MAX_UV)) {
                 uv[axis] = 0;
+                mended = true;
                 gltf_warn_once(import, "%s: %s values that are not finite or huge are taken as 0",
                                primitive.place.c_str(), name);
             }
         }
+        import.scene->rejects.vertices += mended;
     }
 }
 
@@ -233,6 +236,7 @@ static void read_normals(gltf_import &import, const gltf_primitive &primitive,
         gltf_read_element(elements, primitive.used[i], mesh.vertices[i].normal, 3);
     }
     uint32_t repaired = triangle_mesh_repair_normals(&mesh);
+    import.scene->rejects.vertices += repaired;
     if (repaired > 0) {
         gltf_warn_once(import, "%s: %u normals that are zero or not finite are recomputed",
                        primitive.place.c_str(), repaired);

@@ -264,10 +264,14 @@ static void fill_vertex(const obj_document &document, const obj_face &face,
     vertex.color[0] = vertex.color[1] = vertex.color[2] = vertex.color[3] = 1;
     if (corner.uv != OBJ_NO_INDEX) {
         const float *uv = document.uvs[(size_t)corner.uv].value;
+        bool mended = false;
         for (int axis = 0; axis < 2; axis++) {
             float value = axis == 1 ? 1 - uv[1] : uv[0]; // OBJ's V points up
-            vertex.uv[0][axis] = std::fabs(value) <= OBJ_MAX_UV ? value : 0;
+            bool usable = std::fabs(value) <= OBJ_MAX_UV;
+            vertex.uv[0][axis] = usable ? value : 0;
+            mended = mended || !usable;
         }
+        document.import->scene->rejects.vertices += mended;
     }
     if (corner.normal != OBJ_NO_INDEX) {
         memcpy(vertex.normal, document.normals[(size_t)corner.normal].value, sizeof(vertex.normal));

@@ -33,8 +33,12 @@ struct obj_pictures {
     }
 };
 
-static float clamp_value(float value, float low, float high, float fallback)
+static float clamp_value(obj_import &import, float value, float low, float high, float fallback)
 {
+    if (value >= low && value <= high) {
+        return value;
+    }
+    import.scene->rejects.parameters++;
     return std::isnan(value) ? fallback : std::clamp(value, low, high);
 }
 
@@ -180,7 +184,7 @@ static void set_surface_maps(obj_import &import, obj_pictures &pictures,
         set_texture(import, pictures, slot, "file:" + texture_name(name),
                     [&] { return image_retain(normals); });
     } else if (heights) {
-        float multiplier = clamp_value(source.bump_texopt.bump_multiplier, -100, 100, 1);
+        float multiplier = clamp_value(import, source.bump_texopt.bump_multiplier, -100, 100, 1);
         set_texture(import, pictures, slot,
                     "bump:" + std::to_string(multiplier) + texture_name(source.bump_texname),
                     [&] { return obj_make_normal_map(heights, multiplier); });
@@ -193,7 +197,8 @@ static void set_emission(obj_import &import, obj_pictures &pictures,
     struct image *picture = find_picture(pictures, source.emissive_texname);
     float largest = 0;
     for (int channel = 0; channel < 3; channel++) {
-        material.emissive[channel] = clamp_value(source.emission[channel], 0, OBJ_MAX_EMISSION, 0);
+        material.emissive[channel] =
+            clamp_value(import, source.emission[channel], 0, OBJ_MAX_EMISSION, 0);
         largest = std::max(largest, material.emissive[channel]);
     }
     if (picture) {
@@ -218,18 +223,18 @@ static void add_material(obj_import &import, obj_pictures &pictures,
     scene_material_init(&material, import_short_name(source.name, 64).c_str());
     material.double_sided = true; // OBJ says nothing of sides, and viewers show both
     for (int channel = 0; channel < 3; channel++) {
-        material.base_color[channel] = clamp_value(source.diffuse[channel], 0, 1, 0);
+        material.base_color[channel] = clamp_value(import, source.diffuse[channel], 0, 1, 0);
     }
-    material.base_color[3] = clamp_value(source.dissolve, 0, 1, 1);
+    material.base_color[3] = clamp_value(import, source.dissolve, 0, 1, 1);
     if (material.base_color[3] < 1) {
         material.alpha_mode = SCENE_ALPHA_BLEND;
     }
     if (source.unknown_parameter.count(OBJ_PBR_KEY) > 0) {
-        material.roughness = clamp_value(source.roughness, 0, 1, 1);
-        material.metallic = clamp_value(source.metallic, 0, 1, 0);
+        material.roughness = clamp_value(import, source.roughness, 0, 1, 1);
+        material.metallic = clamp_value(import, source.metallic, 0, 1, 0);
     } else {
         // The roughness of the GGX lobe as wide as Phong's of exponent Ns.
-        float exponent = clamp_value(source.shininess, 0, 1e6f, 0);
+        float exponent = clamp_value(import, source.shininess, 0, 1e6f, 0);
         material.roughness = std::sqrt(2 / (exponent + 2));
         material.metallic = 0;
     }

@@ -6,20 +6,35 @@
 #include "renderer/scene/builtin/builtin.h"
 #include "tests/stability/stage.h"
 
-// Draws the stage from `camera` and tells how many values were not finite.
+struct named_camera {
+    const char *name;
+    struct view_camera camera;
+};
+
+// Draws the stage from one camera after the other and tells how many values were not finite.
 static void draw_from(struct stability_run *run, struct stage *stage,
-                      const struct view_camera *camera, const char *name)
+                      const struct named_camera *cameras, uint32_t count)
 {
     struct frame_params params = stability_params(run);
-    struct picture picture;
-    params.camera = *camera;
-    if (stability_draw(run, stage->scene, &params, &picture)) {
-        stability_measure(run, (double)run->bad_values, "%s", name);
-        if (!(stability_mean(&picture) > 0.0))
-            stability_fail(run, "%s: the picture is black", name);
-        stability_keep(run, &picture, name);
+    struct stability_view view;
+    bool reference = run->method == GI_METHOD_REFERENCE;
+    bool done = reference || stability_view_open(&view, run, stage->scene);
+    for (uint32_t i = 0; i < count && done; i++) {
+        struct picture picture = {0};
+        params.camera = cameras[i].camera;
+        done = reference ? stability_draw(run, stage->scene, &params, &picture)
+                         : stability_view_settle(&view, &params);
+        if (!done)
+            break;
+        const struct picture *drawn = reference ? &picture : &view.picture;
+        stability_measure(run, (double)run->bad_values, "%s", cameras[i].name);
+        if (!(stability_mean(drawn) > 0.0))
+            stability_fail(run, "%s: the picture is black", cameras[i].name);
+        stability_keep(run, drawn, cameras[i].name);
         picture_finish(&picture);
     }
+    if (!reference)
+        stability_view_close(&view);
 }
 
 static struct view_camera camera_at(const struct stage *stage, float x, float y, float z)
@@ -45,13 +60,16 @@ static void run_places(struct stability_run *run)
         {"on-a-corner", {-0.25f, 1.0f, -0.25f}, {1.0f, 1.0f, 1.0f}},
         {"in-a-wall-s-plane", {-2.0f, 1.0f, 1.5f}, {-2.0f, 1.0f, -1.0f}},
     };
+    struct named_camera cameras[sizeof(places) / sizeof(places[0])];
+    const uint32_t count = sizeof(places) / sizeof(places[0]);
     stage.scene->lights[stage.lamp].radius_m = 0.25f;
-    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
-        struct view_camera camera =
-            camera_at(&stage, places[i].eye[0], places[i].eye[1], places[i].eye[2]);
-        memcpy(camera.target, places[i].target, sizeof(camera.target));
-        draw_from(run, &stage, &camera, places[i].name);
+    for (uint32_t i = 0; i < count; i++) {
+        const float *eye = places[i].eye;
+        cameras[i] =
+            (struct named_camera){places[i].name, camera_at(&stage, eye[0], eye[1], eye[2])};
+        memcpy(cameras[i].camera.target, places[i].target, sizeof(places[i].target));
     }
+    draw_from(run, &stage, cameras, count);
     scene_destroy(&stage.scene);
 }
 
@@ -61,12 +79,13 @@ static void run_directions(struct stability_run *run)
     if (!stage_create(run, &(struct stage_params){0}, &stage))
         return;
     struct view_camera camera = camera_at(&stage, 0.0f, 2.5f, 0.0f);
-    memcpy(camera.target, (float[3]){0.0f, 1.0f, 0.0f}, sizeof(camera.target));
-    draw_from(run, &stage, &camera, "up-along-view");
-    memcpy(camera.target, camera.eye, sizeof(camera.target));
-    draw_from(run, &stage, &camera, "target-at-eye");
-    memset(camera.up, 0, sizeof(camera.up));
-    draw_from(run, &stage, &camera, "no-up");
+    struct named_camera cameras[3] = {
+        {"up-along-view", camera}, {"target-at-eye", camera}, {"no-up", camera}};
+    memcpy(cameras[0].camera.target, (float[3]){0.0f, 1.0f, 0.0f}, sizeof(camera.target));
+    for (int i = 1; i < 3; i++)
+        memcpy(cameras[i].camera.target, camera.eye, sizeof(camera.target));
+    memset(cameras[2].camera.up, 0, sizeof(camera.up));
+    draw_from(run, &stage, cameras, 3);
     scene_destroy(&stage.scene);
 }
 

@@ -86,7 +86,8 @@ static bool draw_with_threads(struct stability_run *run, int threads, const char
     snprintf(path, sizeof(path), "%s/%d.pfm", folder, threads);
     snprintf(command, sizeof(command),
              "LP_NUM_THREADS=%d '%s' render builtin:cornell --gi %s --preset interactive "
-             "--set bounces=2 --set voxel_resolution=64 --size 64x48 --threads %d --spp 4 "
+             "--set bounces=2 --set voxel_resolution=64 --set gather_mode=cache --size 64x48 "
+             "--threads %d --spp 4 "
              "--out '%s' >/dev/null",
              threads, program, gi_method_names[run->method], threads, path);
     if (run->method != GI_METHOD_REFERENCE) {

@@ -249,6 +249,42 @@ static void run_without_normals(struct stability_run *run)
     compare(run, add_without_normals, add_plain_sheet);
 }
 
+static void tell_count(struct stability_run *run, const struct frame_statistics *statistics,
+                       const char *name, uint64_t expected)
+{
+    for (uint32_t i = 0; i < statistics->reject_count; i++)
+        if (strcmp(statistics->rejects[i].name, name) == 0)
+            stability_measure(run, fabs((double)statistics->rejects[i].count - (double)expected),
+                              "%s: %llu rather than %llu", name,
+                              (unsigned long long)statistics->rejects[i].count,
+                              (unsigned long long)expected);
+}
+
+// Three triangles that are nowhere, and of 18 triangles every third has normals of NaN, every third
+// infinite ones.
+static void run_counted(struct stability_run *run)
+{
+    struct stage stage;
+    struct stability_view view;
+    struct frame_statistics statistics;
+    if (!stage_create(run, &(struct stage_params){0}, &stage))
+        return;
+    add_nan_positions(&stage);
+    add_sheet(&stage, 3, 1, drop_normals, stage.walls);
+    struct frame_params params = stability_params(run);
+    params.camera = stage.camera;
+    if (stability_view_open(&view, run, stage.scene) &&
+        stability_view_draw(&view, &params) == RENDER_DRAWN) {
+        renderer_view_get_statistics(stability_renderer(run), view.view, &statistics);
+        tell_count(run, &statistics, "triangles_left_out", 3);
+        tell_count(run, &statistics, "vertices_mended", 36);
+        tell_count(run, &statistics, "voxel_values_cut", 0);
+        tell_count(run, &statistics, "lamps_without_shadow", 0);
+    }
+    stability_view_close(&view);
+    scene_destroy(&stage.scene);
+}
+
 static void drop_uv(struct scene_vertex triangle[3], uint32_t number)
 {
     (void)number;
@@ -512,6 +548,12 @@ static const struct stability_case cases[] = {
      .bound = 0.0,
      .unit = OF_BRIGHTEST,
      .run = run_nan_positions},
+    {.name = "counted",
+     .invariant = "the statistics tell how many triangles were left out and vertices mended",
+     .methods = STABILITY_NONE,
+     .bound = 0.0,
+     .unit = "miscounted",
+     .run = run_counted},
     {.name = "cancelling-balls",
      .invariant = "balls of 1 cm, whose normals cancel in a voxel, change no other pixel",
      .methods = STABILITY_DRAWN,

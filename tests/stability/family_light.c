@@ -101,18 +101,28 @@ static void run_places(struct stability_run *run)
         {"at-the-camera", {0.0f, 1.5f, 1.75f}},
         {"on-the-box", {-0.75f, 1.0f, -0.75f}},
     };
-    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
-        struct stage stage;
-        struct picture picture;
-        if (!stage_create(run, &(struct stage_params){0}, &stage))
-            return;
+    struct stage stage;
+    struct stability_view view;
+    bool reference = run->method == GI_METHOD_REFERENCE;
+    if (!stage_create(run, &(struct stage_params){0}, &stage))
+        return;
+    struct frame_params params = stability_params(run);
+    params.camera = stage.camera;
+    bool done = reference || stability_view_open(&view, run, stage.scene);
+    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]) && done; i++) {
+        struct picture picture = {0};
         move_lamp(&stage, places[i].place);
-        if (!stage_draw(run, &stage, &picture))
-            return;
+        done = reference ? stability_draw(run, stage.scene, &params, &picture)
+                         : stability_view_settle(&view, &params);
+        if (!done)
+            break;
         stability_measure(run, (double)run->bad_values, "%s", places[i].name);
-        stability_keep(run, &picture, places[i].name);
+        stability_keep(run, reference ? &picture : &view.picture, places[i].name);
         picture_finish(&picture);
     }
+    if (!reference)
+        stability_view_close(&view);
+    scene_destroy(&stage.scene);
 }
 
 // In the closed box a lamp lights nothing of the room.

@@ -141,7 +141,8 @@ static void run_preset(struct stability_run *run)
     enum quality quality = (enum quality)run->test->variant;
     struct rooms rooms = rooms_of(2, 1.0f);
     double lit, dark;
-    if (room_mean(run, &rooms, 0, quality, &lit) && room_mean(run, &rooms, 1, quality, &dark))
+    if (room_mean(run, &rooms, 0, QUALITY_INTERACTIVE, &lit) &&
+        room_mean(run, &rooms, 1, quality, &dark))
         stability_measure(run, dark / lit, "turn %.2f", (double)rooms.turn_rad);
 }
 
