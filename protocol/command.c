@@ -54,7 +54,7 @@ static const struct field fields[] = {
     {"resume_epoch", RESUME_EPOCH, FIELD_INTEGER, 0, PROTOCOL_MAX_SAFE_INTEGER},
     {"resume_revision", RESUME_REVISION, FIELD_INTEGER, 0, PROTOCOL_MAX_SAFE_INTEGER},
     {"source", SOURCE, FIELD_STRING, 0, PROTOCOL_MAX_SOURCE_BYTES},
-    {"x", PIXEL_X, FIELD_NUMBER, 0, 3840},
+    {"x", PIXEL_X, FIELD_NUMBER, 0, 4096},
     {"y", PIXEL_Y, FIELD_NUMBER, 0, 2160},
     {"ladder", LADDER, FIELD_CHOICE, 0, 0, command_ladder_names},
     {"noise", NOISE, FIELD_NUMBER, 0.0005, 0.1},

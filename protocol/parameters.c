@@ -179,7 +179,7 @@ static const struct parameter parameters[] = {
     FLOAT_(GROUP_ANIMATION, "speed", -10, 10, 0.1, "", "1", "Seconds of animation per second."),
     BOOL_(GROUP_ANIMATION, "loop", 0, "true", "Start over at the end instead of stopping."),
 
-    INT_(GROUP_VIEW, "width", 1, 3840, "px", "640", "Width of this client's picture."),
+    INT_(GROUP_VIEW, "width", 1, 4096, "px", "640", "Width of this client's picture."),
     INT_(GROUP_VIEW, "height", 1, 2160, "px", "360", "Height of this client's picture."),
     ENUM_(GROUP_VIEW, "quality", 0, "\"final\"", NAMES("draft", "interactive", "high", "final"),
           "Row of the quality table that a still picture gets."),

@@ -79,12 +79,11 @@ struct instance_cull {
     vec3 eye_local;
 };
 
-static void instance_cull_init(struct instance_cull *cull, const struct resident *resident,
-                               const struct resident_instance *instance, const vec4 planes[6],
-                               const mat4 clip_from_world, const float *eye)
+static void instance_cull_init(struct instance_cull *cull, const struct resident_instance *instance,
+                               const vec4 planes[6], const mat4 clip_from_world, const float *eye)
 {
     cull->planes = planes;
-    const float *m = resident->scene->nodes[instance->node].world_from_local;
+    const float *m = instance->world_from_local;
     // In double: far from the origin the products nearly cancel.
     for (int row = 0; row < 4; row++)
         for (int column = 0; column < 4; column++) {
@@ -93,8 +92,7 @@ static void instance_cull_init(struct instance_cull *cull, const struct resident
                 sum += (double)clip_from_world[i][row] * m[column * 4 + i];
             cull->clip_rows[row][column] = (float)sum;
         }
-    memcpy(cull->matrix, resident->scene->nodes[instance->node].world_from_local,
-           sizeof(cull->matrix));
+    memcpy(cull->matrix, instance->world_from_local, sizeof(cull->matrix));
     cull->scale = instance->scale;
     mat4 world_from_local, local_from_world;
     memcpy(world_from_local, cull->matrix, sizeof(cull->matrix));
@@ -183,8 +181,7 @@ void draw_list_fill(struct draw_list *list, const struct resident *resident,
                 box_is_outside((const vec4 *)planes, instance->bounds_min, instance->bounds_max))
                 continue;
             struct instance_cull cull;
-            instance_cull_init(&cull, resident, instance, (const vec4 *)planes, clip_from_world,
-                               eye);
+            instance_cull_init(&cull, instance, (const vec4 *)planes, clip_from_world, eye);
             append_instance(list, &total, resident, i, &cull);
         }
         list->count[group] = total - list->first[group];

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "renderer/camera.h"
+#include "renderer/finite_check.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
@@ -15,8 +16,10 @@
 #include "renderer/resident/triangle_tree.h"
 #include "renderer/view.h"
 
-// Nearest visible distance, relative to the scene's diagonal. Reversed Z keeps precision anyway.
+// Nearest visible distance, relative to the scene's diagonal, and the most it is in m: what is near
+// is to be seen however far the scene reaches. Reversed Z keeps precision anyway.
 #define NEAR_FRACTION 1e-5f
+#define NEAR_MOST_M   5e-5f
 
 struct renderer {
     struct gpu *gpu;
@@ -161,13 +164,12 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     const struct resident *resident = frame->resident;
     const struct render_settings *settings = &params->settings;
     struct camera_frame camera;
-    camera_frame_init(&camera, &params->camera);
-    float near_m = resident->diagonal_m * NEAR_FRACTION;
+    camera_frame_init(&camera, &frame->camera);
+    float near_m = fminf(resident->diagonal_m * NEAR_FRACTION, NEAR_MOST_M);
     *block = (struct frame_block){0};
-    camera_clip_from_world(&camera, params->camera.eye,
-                           (float)params->width / (float)params->height, near_m,
-                           block->clip_from_world);
-    memcpy(block->eye, params->camera.eye, sizeof(vec3));
+    camera_clip_from_world(&camera, frame->camera.eye, (float)params->width / (float)params->height,
+                           near_m, block->clip_from_world);
+    memcpy(block->eye, frame->camera.eye, sizeof(vec3));
     block->eye[3] = near_m;
     memcpy(block->forward, camera.forward, sizeof(vec3));
     // Rays span the shown picture's aspect, whatever the rendered size was rounded to.
@@ -202,9 +204,12 @@ static void fill_frame_block(const struct frame *frame, struct frame_block *bloc
     block->display[3] = settings->shading_model == SHADING_MODEL_BLINN_PHONG ? 1.0f : 0.0f;
     block->environment[0] = frame->resident->scene->environment.intensity;
     block->environment[1] = frame->resident->scene->environment.rotation_rad;
+    block->environment[2] = resident->diagonal_m;
+    float least_m = fminf(LAMP_LEAST_SHARE * resident->diagonal_m, LAMP_LEAST_M);
+    block->environment[3] = least_m * least_m;
     block->textures[0] = frame->quality->texture_anisotropy;
     block->textures[2] = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
-    block->textures[1] = resident->diagonal_m * SHADOW_NEAR_FRACTION;
+    block->textures[1] = resident_shadow_near_m(resident);
     block->textures[3] = frame->quality->specular_roughness;
     if (resident->tree)
         memcpy(block->tree, resident->tree->center, sizeof(vec3));
@@ -232,8 +237,7 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     shadow_map_relate_cascades(frame, &block);
     gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     if (frame->visibility_changed)
-        draw_list_fill(&view->draws, frame->resident, block.clip_from_world,
-                       frame->params->camera.eye);
+        draw_list_fill(&view->draws, frame->resident, block.clip_from_world, frame->camera.eye);
     resident_bind(frame->resident);
     view_bind(view);
     if (frame->volume)
@@ -345,11 +349,14 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .resident = resident,
         .view = view,
         .params = params,
+        .camera = params->camera,
         .quality = &quality_levels[params->quality],
         .unchanged = same,
         .visibility_changed =
             !same_scene || view->surfaces_stale || !same_surfaces(view, params, &revisions),
     };
+    resident_place(resident, params->camera.eye, frame.camera.eye);
+    resident_place(resident, params->camera.target, frame.camera.target);
     enum render_result result = take_reference(renderer, &frame, same);
     if (result != RENDER_DRAWN)
         return result;
@@ -403,10 +410,13 @@ static void collect_light(struct renderer *renderer, struct view *view,
                           const struct ring_frame *slot, const void *bytes)
 {
     struct voxel_volume *volume = gi_find(&renderer->gi, slot->volume_serial);
-    if (!volume || slot->generation == 0)
+    if (!volume)
         return;
     struct voxel_light_report report;
     memcpy(&report, bytes, sizeof(report));
+    volume->cut = report.cut;
+    if (slot->generation == 0)
+        return;
     gpu_timer_poll(view->timer);
     double trace_ms = 0.0;
     for (uint32_t i = 0; i < PASS_COUNT; i++)
@@ -493,6 +503,28 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
     };
     for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
         add_memory(statistics, renderer->gpu, groups[i][0], groups[i][1]);
+    const struct voxel_volume *volume = gi_find(&renderer->gi, view->volume_serial);
+    const struct scene_rejects none = {0};
+    const struct scene_rejects *rejects = renderer->scene ? &renderer->scene->rejects : &none;
+    const struct reject_statistics found[] = {
+        {"triangles_left_out", rejects->triangles},
+        {"vertices_mended", rejects->vertices},
+        {"parameters_clamped", rejects->parameters},
+        {"voxel_values_cut", volume ? volume->cut : 0},
+        {"lamps_without_shadow", renderer->resident ? renderer->resident->counts.unshadowed : 0},
+    };
+    statistics->reject_count = sizeof(found) / sizeof(found[0]);
+    memcpy(statistics->rejects, found, sizeof(found));
+}
+
+bool renderer_check_finite(struct renderer *renderer, const struct view *view,
+                           struct finite_report *out_report, struct error *out_error)
+{
+    const struct finite_check check = {.gpu = renderer->gpu,
+                                       .resident = renderer->resident,
+                                       .view = view,
+                                       .volume = gi_find(&renderer->gi, view->volume_serial)};
+    return finite_check_run(&check, out_report, out_error);
 }
 
 bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, uint32_t width,

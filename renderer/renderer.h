@@ -146,6 +146,12 @@ struct memory_statistics {
     uint64_t bytes;
 };
 
+// Values that were wrong, or more than there is room for, and were clamped or left out.
+struct reject_statistics {
+    const char *name; // such as "triangles_left_out"
+    uint64_t count;
+};
+
 struct frame_statistics {
     uint32_t pass_count;
     struct pass_statistics passes[RENDERER_MAX_PASSES];
@@ -153,6 +159,8 @@ struct frame_statistics {
     struct effect_statistics effects[RENDERER_MAX_EFFECTS];
     uint32_t memory_count;
     struct memory_statistics memory[16];
+    uint32_t reject_count;
+    struct reject_statistics rejects[8];
     double frame_time_ms; // of the newest collected frame
     float exposure;       // scale in use
     uint32_t render_width, render_height;
@@ -160,6 +168,24 @@ struct frame_statistics {
 
 void renderer_view_get_statistics(const struct renderer *renderer, const struct view *view,
                                   struct frame_statistics *out_statistics);
+
+#define FINITE_MAX_RESOURCES 16u
+
+// What a look at the values that frames leave on the GPU has found.
+struct finite_report {
+    uint32_t count;
+    struct finite_resource {
+        const char *name;
+        uint32_t values; // that are infinite or no numbers
+        uint32_t first;  // word of the buffer, or texel, if there are any
+    } resources[FINITE_MAX_RESOURCES];
+};
+
+// Looks for values that are not finite in every floating-point resource that the view's newest
+// frame wrote, and in what it read of the scene. For tests: waits for the GPU; frames that nobody
+// asks about pay nothing. False with a message when a shader fails or memory ends.
+bool renderer_check_finite(struct renderer *renderer, const struct view *view,
+                           struct finite_report *out_report, struct error *out_error);
 
 // Casts a ray through the centre of pixel (x, y) of a view of the given camera and size. False if
 // it hits nothing. The first call after a geometry change builds the BVH.

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define VIEW_MAX_WIDTH  3840u
+#define VIEW_MAX_WIDTH  4096u
 #define VIEW_MAX_HEIGHT 2160u
 #define VIEW_MIN_EDGE   1u
 

@@ -31,7 +31,7 @@ static const char usage[] =
     "  --light N       the lamp that is edited (default: the first that shines)\n"
     "  --material N    the emissive material that is edited (default where no lamp shines)\n"
     "  --repetitions N 2 to 1000 edits measured (default 10)\n"
-    "  --size WxH      1x1 to 3840x2160 (default 640x360)\n"
+    "  --size WxH      1x1 to 4096x2160 (default 640x360)\n"
     "  --preset NAME   draft, interactive, high or final (default interactive)\n"
     "  --json          JSON on stdout\n"
     "  --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu   as voxcast render\n";

@@ -21,7 +21,7 @@ static const char usage[] =
     "\n"
     "  --gi METHOD     none, clipmap or grid (default as the daemon has it)\n"
     "  --preset NAME   draft, interactive, high or final (default interactive)\n"
-    "  --size WxH      1x1 to 3840x2160 (default 640x360)\n"
+    "  --size WxH      1x1 to 4096x2160 (default 640x360)\n"
     "  --frames N      frames measured of each, 1 to 10000 (default 30)\n"
     "  --json          JSON on stdout; the table goes to stderr\n"
     "  --gpu WHICH     auto, software or a device index (default auto)\n";

@@ -32,7 +32,7 @@ static const char usage[] =
     "\n"
     "  --scene FILE    the box (default $VOXCAST_SCENES/natus-cornell/natus-cornell.glb); the\n"
     "                  same name with -emissive before its extension is lit by the wall\n"
-    "  --size WxH      1x1 to 3840x2160 (default 1024x768)\n"
+    "  --size WxH      1x1 to 4096x2160 (default 1024x768)\n"
     "  --voxels N      only this resolution: 64, 128 or 256 (auto: all)\n"
     "  --frames N      frames measured in each row, 1 to 10000 (default 30)\n"
     "  --converge N    frames drawn before, unless it has converged, 0 to 10000 (default 100)\n"

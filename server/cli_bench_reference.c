@@ -21,7 +21,7 @@ static const char usage[] =
     "of that by processor time, which holds on a busy machine, too; for direct light (primary\n"
     "and shadow rays) and for light of all bounces.\n"
     "\n"
-    "  --size WxH      1x1 to 3840x2160 (default 640x360)\n"
+    "  --size WxH      1x1 to 4096x2160 (default 640x360)\n"
     "  --spp N         samples per pixel and round, 1 to 64 (default 4)\n"
     "  --rounds N      1 to 1000 (default 5)\n"
     "  --threads N     1 to 256 (default: as many as there are processors)\n";

@@ -129,6 +129,10 @@ cJSON *cli_statistics_json(const struct cli_measurement *measurement,
     for (uint32_t i = 0; i < statistics->memory_count; i++)
         cJSON_AddNumberToObject(memory, statistics->memory[i].name,
                                 (double)statistics->memory[i].bytes);
+    cJSON *rejects = cJSON_AddObjectToObject(root, "rejects");
+    for (uint32_t i = 0; i < statistics->reject_count; i++)
+        cJSON_AddNumberToObject(rejects, statistics->rejects[i].name,
+                                (double)statistics->rejects[i].count);
     cJSON *contents = cJSON_AddObjectToObject(root, "scene");
     uint32_t lights = 0;
     for (uint32_t i = 0; i < scene->light_count; i++)

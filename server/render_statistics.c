@@ -32,6 +32,13 @@ static void add_passes(cJSON *params, const struct frame_statistics *statistics)
         cJSON_AddNumberToObject(item, "bytes", (double)statistics->memory[i].bytes);
         cJSON_AddItemToArray(memory, item);
     }
+    cJSON *rejects = cJSON_AddArrayToObject(params, "rejects");
+    for (uint32_t i = 0; i < statistics->reject_count; i++) {
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, "name", statistics->rejects[i].name);
+        cJSON_AddNumberToObject(item, "count", (double)statistics->rejects[i].count);
+        cJSON_AddItemToArray(rejects, item);
+    }
 }
 
 // The stage that takes longest. Waiting for an acknowledgement counts only in so far as it is

@@ -18,6 +18,8 @@ static const char usage[] =
     "                            voxcast compare --help\n"
     "  accuracy SCENE --out DIR  error against time for every setting; see\n"
     "                            voxcast accuracy --help\n"
+    "  stability                 small scenes that try to break the numbers; see\n"
+    "                            voxcast stability --help\n"
     "  --version                 print the version\n";
 
 int main(int argc, char **argv)
@@ -35,15 +37,14 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         int (*run)(int argc, char **argv);
-    } commands[] = {{"render", cli_render},
-                    {"info", cli_info},
-                    {"bench", cli_bench},
-                    {"compare", cli_compare},
-                    {"accuracy", cli_accuracy}};
+    } commands[] = {{"render", cli_render},     {"info", cli_info},
+                    {"bench", cli_bench},       {"compare", cli_compare},
+                    {"accuracy", cli_accuracy}, {"stability", cli_stability}};
     for (size_t i = 0; i < sizeof(commands) / sizeof(commands[0]); i++)
         if (strcmp(argv[1], commands[i].name) == 0)
             return commands[i].run(argc - 1, argv + 1);
     return cli_fail(CLI_EXIT_USAGE,
-                    "unknown command \"%s\"; known are render, info, bench, compare and accuracy",
+                    "unknown command \"%s\"; known are render, info, bench, compare, accuracy and "
+                    "stability",
                     argv[1]);
 }

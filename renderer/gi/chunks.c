@@ -62,7 +62,7 @@ static bool add_instance_chunks(struct voxel_volume *volume, const struct reside
                                 uint32_t number, uint32_t level, const struct voxel_box *box)
 {
     const struct resident_instance *instance = &resident->instances[number];
-    const float *matrix = resident->scene->nodes[instance->node].world_from_local;
+    const float *matrix = instance->world_from_local;
     uint32_t triangles = instance->index_count / 3;
     for (uint32_t at = 0; at < triangles; at += VOXEL_CHUNK) {
         const struct resident_cluster *cluster =

@@ -200,7 +200,8 @@ static float brightest_channel(const float color[3])
 }
 
 // A power of two that radiance is divided by, so that half floats hold it: from the illuminance
-// that lights bring to surfaces some voxels away, from emission and from the environment.
+// that lights bring to surfaces some voxels away, all to the same, from emission and from the
+// environment.
 // Kept while it still suits, since what is stored was divided by it.
 static float radiance_scale(const struct resident *resident, float before)
 {
@@ -209,11 +210,12 @@ static float radiance_scale(const struct resident *resident, float before)
     float near = 0.05f * resident->diagonal_m;
     for (uint32_t i = 0; i < scene->light_count; i++) {
         const struct scene_light *light = &scene->lights[i];
-        if (light->removed || !light->enabled)
+        if (light->removed || !light->enabled || !(light->intensity > 0.0f) ||
+            !isfinite(light->intensity))
             continue;
         float intensity = light->intensity * brightest_channel(light->color) / (float)GLM_PI;
         bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
-        brightest = fmaxf(brightest, directional ? intensity : intensity / (near * near));
+        brightest += directional ? intensity : intensity / (near * near);
     }
     for (uint32_t i = 0; i < scene->material_count; i++)
         brightest = fmaxf(brightest, brightest_channel(scene->materials[i].emissive) *
@@ -384,7 +386,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         return error_set(out_error,
                          "%u views have settings of their own; no more of them can have voxels",
                          GI_MAX_OWN_VOLUMES);
-    if (!volume || !voxel_volume_update(volume, frame->resident, frame->params->camera.eye))
+    if (!volume || !voxel_volume_update(volume, frame->resident, frame->camera.eye))
         return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
     frame->volume = volume;
     frame->view->volume_serial = found->serial;

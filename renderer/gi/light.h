@@ -33,7 +33,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
 // What the counters said when a frame was done, read back without waiting.
 struct voxel_light_report {
     uint32_t overflow; // OVERFLOW_ bits
-    uint32_t unused;
+    uint32_t cut;      // values that half floats do not hold, since the volume was made
     uint32_t left;
     uint32_t change_bits;
     uint32_t traced;

@@ -311,11 +311,9 @@ static void mark_bounds(struct voxel_volume *volume, const struct voxel_box kept
     }
 }
 
-static void remember_instance(struct voxel_instance *seen, const struct resident *resident,
-                              const struct resident_instance *instance)
+static void remember_instance(struct voxel_instance *seen, const struct resident_instance *instance)
 {
-    memcpy(seen->matrix, resident->scene->nodes[instance->node].world_from_local,
-           sizeof(seen->matrix));
+    memcpy(seen->matrix, instance->world_from_local, sizeof(seen->matrix));
     memcpy(seen->bounds_min, instance->bounds_min, sizeof(seen->bounds_min));
     memcpy(seen->bounds_max, instance->bounds_max, sizeof(seen->bounds_max));
     seen->visible = instance->visible;
@@ -329,7 +327,7 @@ static void mark_moved_instances(struct voxel_volume *volume, const struct resid
     for (uint32_t i = 0; i < volume->instance_count; i++) {
         const struct resident_instance *instance = &resident->instances[i];
         struct voxel_instance *seen = &volume->instances[i];
-        const float *matrix = resident->scene->nodes[instance->node].world_from_local;
+        const float *matrix = instance->world_from_local;
         if (seen->visible == instance->visible &&
             memcmp(seen->matrix, matrix, sizeof(seen->matrix)) == 0)
             continue;
@@ -337,7 +335,7 @@ static void mark_moved_instances(struct voxel_volume *volume, const struct resid
             mark_bounds(volume, kept, seen->bounds_min, seen->bounds_max);
         if (instance->visible)
             mark_bounds(volume, kept, instance->bounds_min, instance->bounds_max);
-        remember_instance(seen, resident, instance);
+        remember_instance(seen, instance);
     }
 }
 
@@ -348,7 +346,7 @@ static bool remember_all_instances(struct voxel_volume *volume, const struct res
     volume->instances = calloc(count ? count : 1, sizeof(*volume->instances));
     volume->instance_count = volume->instances ? count : 0;
     for (uint32_t i = 0; i < volume->instance_count; i++)
-        remember_instance(&volume->instances[i], resident, &resident->instances[i]);
+        remember_instance(&volume->instances[i], &resident->instances[i]);
     return volume->instances != NULL;
 }
 

@@ -120,6 +120,7 @@ struct voxel_volume {
     struct voxel_light_state light;
     uint32_t frame; // counts draws
     float scale;    // radiance is stored divided by it
+    uint32_t cut;   // values that half floats did not hold, so far
     struct voxel_block uniforms;
 };
 

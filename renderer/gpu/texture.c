@@ -148,6 +148,19 @@ uint64_t gpu_texture_size_bytes(const struct gpu_texture *texture)
     return texture->allocation.bytes;
 }
 
+uint32_t gpu_texture_levels(const struct gpu_texture *texture)
+{
+    return texture->params.levels;
+}
+
+size_t gpu_texture_texel_count(const struct gpu_texture *texture, uint32_t level)
+{
+    const struct gpu_texture_params *params = &texture->params;
+    size_t width = params->width >> level, height = params->height >> level;
+    size_t depth = params->depth ? params->depth >> level : params->layers;
+    return (width ? width : 1) * (height ? height : 1) * (depth ? depth : 1);
+}
+
 uint32_t gpu_texture_layers(const struct gpu_texture *texture)
 {
     return texture->params.layers;

@@ -42,6 +42,7 @@ struct frame {
     struct resident *resident;
     struct view *view;
     const struct frame_params *params;
+    struct view_camera camera; // that of `params`, but placed about the resident's origin
     struct effect_plan plan;
     const struct quality_level *quality;
     uint32_t width; // rendered

@@ -24,11 +24,11 @@ static void place_cascade(struct frame *frame, uint32_t i)
     float step = half * CASCADE_MARGIN;
     vec3 center;
     for (int axis = 0; axis < 3; axis++)
-        center[axis] = step * roundf(frame->params->camera.eye[axis] / step);
+        center[axis] = step * roundf(frame->camera.eye[axis] / step);
     float moved = 0.0f;
     for (int axis = 0; axis < 3; axis++)
         moved =
-            fmaxf(moved, fabsf(frame->params->camera.eye[axis] - view->cascade_center[i][axis]));
+            fmaxf(moved, fabsf(frame->camera.eye[axis] - view->cascade_center[i][axis]));
     if (view->cascade_placed[i] && moved <= 2.0f * step)
         return;
     memcpy(view->cascade_center[i], center, sizeof(center));

@@ -54,12 +54,14 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
 const struct pass transparency_pass = {
     .name = "transparency",
     .effects_used = SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ENVIRONMENT) |
-                    EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_REFRACTION),
-    .use_count = 6,
+                    EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_REFRACTION) |
+                    EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION) | EFFECT_BIT(EFFECT_CLIP_LEVELS),
+    .use_count = 7,
     .uses = {{RESOURCE_DEPTH, ACCESS_READ},
              {RESOURCE_FRAGMENTS, ACCESS_WRITE},
              {RESOURCE_SHADOW_MAP, ACCESS_READ},
              {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
+             {RESOURCE_IRRADIANCE, ACCESS_READ},
              {RESOURCE_LIGHT_MASKS, ACCESS_READ},
              {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
     .skip_reason = transparency_skip_reason,

@@ -118,7 +118,7 @@ static bool voxelize_run(struct frame *frame, const struct pass *pass, struct er
             return true;
         }
         if (room == VOXEL_ROOM_NONE ||
-            !voxel_volume_update(volume, frame->resident, frame->params->camera.eye))
+            !voxel_volume_update(volume, frame->resident, frame->camera.eye))
             break;
         voxel_volume_bind(volume);
     }

@@ -4,9 +4,8 @@
 #include <string.h>
 
 #include "renderer/reference/light_grid.h"
+#include "shared/bindings.h"
 
-// The renderer's: nearer than this to a light (1 mm) the inverse square no longer grows.
-#define MIN_LIGHT_DISTANCE_SQUARED 1e-6f
 // Of more lights than these, a grid tells which reach a point.
 #define FEW_PUNCTUALS 8u
 // Where there is no grid, so many are picked by their power before one is chosen.
@@ -24,6 +23,7 @@ struct punctual {
     bool casts_shadow;
     float range_m;
     float cone_scale, cone_offset;
+    float least_squared; // nearer than that the inverse square no longer grows
     float radius_m;
     float power_end; // cumulative share of all lights' luminance
 };
@@ -57,6 +57,7 @@ static void add_punctual(struct lights *lights, const struct snapshot *snapshot,
     float inner = cosf(light->inner_cone_rad), outer = cosf(light->outer_cone_rad);
     bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
     float scale = 1.0f / max1(0.001f, inner - outer);
+    float least_m = fminf(LAMP_LEAST_SHARE * snapshot->diagonal_m, LAMP_LEAST_M);
     lights->punctuals[lights->punctual_count++] = (struct punctual){
         .position = load3(position),
         .direction = load3(direction),
@@ -66,6 +67,7 @@ static void add_punctual(struct lights *lights, const struct snapshot *snapshot,
         .range_m = directional ? 0.0f : light->range_m,
         .cone_scale = scale,
         .cone_offset = -outer * scale,
+        .least_squared = least_m * least_m,
         .radius_m = directional ? 0.0f : light->radius_m,
     };
 }
@@ -263,7 +265,7 @@ static bool evaluate_punctual(const struct punctual *light, float3 position,
         return false;
     out_sample->distance = sqrtf(squared);
     out_sample->direction = to_light * (1.0f / out_sample->distance);
-    float strength = 1.0f / max1(squared, MIN_LIGHT_DISTANCE_SQUARED);
+    float strength = 1.0f / max1(squared, light->least_squared);
     if (light->range_m > 0.0f) {
         float ratio = squared / range2;
         strength *= clamp01(1.0f - ratio * ratio);
@@ -413,6 +415,7 @@ bool lights_sample_emitter(const struct lights *lights, const struct snapshot *s
         .distance = squared * nearness,
         .light = emitter->radiance,
         .lift = dot3(emitter->normal, direction) > 0.0f ? -emitter->normal : emitter->normal,
+        .span = span3(emitter->edges[0], emitter->edges[1]),
         .density = emitter->per_area * squared / cosine,
         .casts_shadow = true,
     };

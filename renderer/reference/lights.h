@@ -19,6 +19,7 @@ struct light_sample {
     float3 light;     // punctual: illuminance (lux) on a plane facing the light, over the
                       // probability of having been chosen; emitters: radiance (cd/m^2)
     float3 lift;      // of emitters: unit, from the triangle to the point's side; else 0
+    float span;       // of emitters: the longest that the triangle's edges are along an axis
     float density;    // of emitters: of the direction, per steradian
     bool casts_shadow;
 };

@@ -8,10 +8,10 @@
 #include "renderer/reference/sampler_batch.h"
 
 #define RAY_MAX_DISTANCE 1e15f
-// Rays start this far off a surface: some units in the last place of its coordinates, and of the
-// longest rays that may have found it.
-#define OFFSET_OF_PLACE    2e-6f
-#define OFFSET_OF_DIAGONAL 4e-7f
+// Rays start this far off a surface: some units in the last place of its coordinates, and of those
+// that its triangle spans.
+#define OFFSET_OF_PLACE 2e-6f
+#define OFFSET_OF_SPAN  4e-7f
 // Surfaces that one ray may pass through, and vertices that a path may have, unlikely as they are.
 #define MAX_LAYERS   64u
 #define MAX_VERTICES 4096u
@@ -172,17 +172,17 @@ static float3 *layer_of(const struct path *path, uint32_t reflections, bool from
     return &path->layers[layer];
 }
 
-static float offset_at(const struct path *path, float3 position)
+static float offset_at(float3 position, float span)
 {
     float largest = max1(fabsf(position[0]), max1(fabsf(position[1]), fabsf(position[2])));
-    return OFFSET_OF_PLACE * largest + OFFSET_OF_DIAGONAL * path->setup->snapshot->diagonal_m;
+    return OFFSET_OF_PLACE * largest + OFFSET_OF_SPAN * span;
 }
 
 // The point just off a surface, on its ray's side (1) or beyond (-1).
-static float3 step_off(const struct path *path, const struct surface *surface, float side)
+static float3 step_off(const struct surface *surface, float side)
 {
     return surface->position +
-           surface->geometric_normal * (side * offset_at(path, surface->position));
+           surface->geometric_normal * (side * offset_at(surface->position, surface->span));
 }
 
 // What the body that the path is in leaves of light over a distance.
@@ -256,12 +256,12 @@ static void send_light(struct path *path, const struct surface *surface,
         return;
     }
     bool beyond = dot3(sample->direction, surface->geometric_normal) < 0.0f;
-    float3 origin = step_off(path, surface, beyond ? -1.0f : 1.0f), along = sample->direction;
+    float3 origin = step_off(surface, beyond ? -1.0f : 1.0f), along = sample->direction;
     struct ray ray = {.max_distance = RAY_MAX_DISTANCE};
     if (isfinite(sample->distance)) {
         // Aimed anew from the shifted origin, so that the ray meets nothing but at its end.
         float3 target = surface->position + sample->direction * sample->distance;
-        along = target + sample->lift * offset_at(path, target) - origin;
+        along = target + sample->lift * offset_at(target, sample->span) - origin;
         ray.max_distance = 1.0f - 1e-5f;
         if (!(dot3(along, sample->direction) > 0.0f)) {
             *layer += light;
@@ -322,7 +322,7 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
         choice[0] = lights_are_few(snapshot->lights) ? u[0] : get_1d(path, USE_EMITTER);
         if (lights_sample_emitter(snapshot->lights, snapshot, surface->position, choice[0], u,
                                   &sample) &&
-            sample.distance > 2.0f * offset_at(path, surface->position))
+            sample.distance > 2.0f * offset_at(surface->position, surface->span))
             scatter_light(path, surface, bsdf, &sample, AIM_EMITTER);
     }
     if (setup->aims_at_environment) {
@@ -383,7 +383,7 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
     path->scattered = true;
     path->spread = path->spread || scattering.density < SPREAD_DENSITY;
     bool reflected = dot3(path->direction, surface->geometric_normal) > 0.0f;
-    path->origin = step_off(path, surface, reflected ? 1.0f : -1.0f);
+    path->origin = step_off(surface, reflected ? 1.0f : -1.0f);
     if (reflected)
         path->reflections++;
     else
@@ -472,7 +472,7 @@ static bool advance(struct path *path)
         find_environment(path);
         return false;
     }
-    path->origin = step_off(path, &surface, -1.0f);
+    path->origin = step_off(&surface, -1.0f);
     return true;
 }
 

@@ -35,6 +35,8 @@ static void instance_init(struct instance *instance, const float matrix[16])
     for (int axis = 0; axis < 3; axis++)
         instance->normal_columns[axis] =
             cross3(instance->columns[(axis + 1) % 3], instance->columns[(axis + 2) % 3]);
+    instance->stretch = length3(instance->columns[0]) + length3(instance->columns[1]) +
+                        length3(instance->columns[2]);
     instance->mirrored = dot3(instance->normal_columns[0], instance->columns[0]) < 0.0f;
     for (int axis = 0; axis < 3 && instance->mirrored; axis++)
         instance->normal_columns[axis] = -instance->normal_columns[axis];

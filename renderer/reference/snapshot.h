@@ -17,6 +17,7 @@
 struct instance {
     float3 columns[4];        // of world_from_local
     float3 normal_columns[3]; // cofactors, which turn normals outwards of mirrored placements, too
+    float stretch;            // the most that it makes anything longer, or more
     bool mirrored;
 };
 

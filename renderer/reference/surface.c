@@ -145,6 +145,7 @@ bool surface_init(struct surface *surface, const struct snapshot *snapshot,
     surface->is_front = dot3(face, direction) <= 0.0f;
     surface->is_back = !surface->is_front && !material->double_sided;
     surface->position = instance_point(instance, first + edges[0] * u + edges[1] * v);
+    surface->span = span3(edges[0], edges[1]) * instance->stretch;
     surface->view = -direction;
     surface->geometric_normal = surface->is_front ? face : -face;
     surface->normal = surface->is_front ? shading : -shading;

@@ -14,6 +14,7 @@ struct surface {
     bool is_front;           // the ray meets the front
     bool is_back;            // and if not, the surface is single-sided: it shows and emits nothing
     float3 position;         // of the snapshot
+    float span;              // the longest that an edge of its triangle is along an axis, or more
     float3 geometric_normal; // unit, on the ray's side
     float3 normal;           // of vertices and normal map, unit, turned likewise
     float3 view;             // unit, towards the ray's origin

@@ -85,6 +85,12 @@ static inline float max3(float3 a)
     return max1(a[0], max1(a[1], a[2]));
 }
 
+// The largest that either is along an axis, either way.
+static inline float span3(float3 a, float3 b)
+{
+    return max3(larger3(larger3(a, -a), larger3(b, -b)));
+}
+
 // Rec.709.
 static inline float luminance3(float3 rgb)
 {

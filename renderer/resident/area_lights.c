@@ -27,7 +27,7 @@ static void load_corner(const struct scene *scene, const struct resident_instanc
                         uint32_t corner, float out_world[3])
 {
     uint32_t index = scene->indices[instance->index_first + corner];
-    const float *matrix = scene->nodes[instance->node].world_from_local;
+    const float *matrix = instance->world_from_local;
     const float *p = scene->vertices[index].position;
     for (int row = 0; row < 3; row++)
         out_world[row] =
@@ -102,7 +102,7 @@ static uint32_t add_instance(const struct resident *resident,
     float radiance[3];
     emitted_radiance(resident, material, radiance);
     mat4 matrix;
-    memcpy(matrix, scene->nodes[instance->node].world_from_local, sizeof(matrix));
+    memcpy(matrix, instance->world_from_local, sizeof(matrix));
     bool mirrored = glm_mat4_det(matrix) < 0.0f;
     uint32_t triangles = instance->index_count / 3;
     for (uint32_t i = 0; i < triangles && count < MAX_AREA_LIGHTS; i++) {

@@ -165,7 +165,9 @@ static void place_instance(struct resident *resident, struct resident_instance *
     const struct scene *scene = resident->scene;
     const struct scene_node *node = &scene->nodes[instance->node];
     const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
-    fill_instance_block(block, node->world_from_local);
+    memcpy(instance->world_from_local, node->world_from_local, sizeof(node->world_from_local));
+    resident_place(resident, node->world_from_local + 12, instance->world_from_local + 12);
+    fill_instance_block(block, instance->world_from_local);
     block->info[0] = instance->index_first;
     block->info[1] = primitive->material;
     block->info[2] = instance->first_id;
@@ -179,8 +181,8 @@ static void place_instance(struct resident *resident, struct resident_instance *
     // Axes of a sheared placement can add up.
     instance->scale = sqrtf(3.0f * instance->scale);
     double low[3], high[3];
-    placement_transform_box(node->world_from_local, primitive->bounds_min, primitive->bounds_max,
-                            low, high);
+    placement_transform_box(instance->world_from_local, primitive->bounds_min,
+                            primitive->bounds_max, low, high);
     for (int axis = 0; axis < 3; axis++) {
         instance->bounds_min[axis] = (float)low[axis];
         instance->bounds_max[axis] = (float)high[axis];

@@ -12,6 +12,8 @@ struct light_builder {
     struct resident *resident;
     struct shadow_view_block views[MAX_SHADOW_LAYERS];
     uint32_t layers;
+    const struct light_block
+        *owners[MAX_SHADOW_LAYERS]; // of the lamp whose layers begin here; or NULL
 };
 
 // Reversed, infinite Z: depth = near / distance.
@@ -31,12 +33,17 @@ static void perspective_from(const float origin[3], const float forward[3], cons
     glm_mat4_mul(clip_from_view, view_from_world, out_clip_from_world);
 }
 
+float resident_shadow_near_m(const struct resident *resident)
+{
+    return fminf(resident->diagonal_m * SHADOW_NEAR_FRACTION, SHADOW_NEAR_MOST_M);
+}
+
 static void add_perspective_view(struct light_builder *builder, const float origin[3],
                                  const float forward[3], const float up[3], float fov_rad)
 {
     struct shadow_view_block *view = &builder->views[builder->layers++];
     *view = (struct shadow_view_block){0};
-    float near_m = builder->resident->diagonal_m * SHADOW_NEAR_FRACTION;
+    float near_m = resident_shadow_near_m(builder->resident);
     perspective_from(origin, forward, up, fov_rad, near_m, view->clip_from_world);
     view->texel[0] = 2.0f * tanf(0.5f * fov_rad) / (float)SHADOW_MAP_EDGE;
     view->texel[3] = 1.0f;
@@ -94,15 +101,19 @@ void resident_directional_view(const struct resident *resident, const float axis
 static bool light_is_lit(const struct scene *scene, const struct scene_light *light)
 {
     return light->enabled && !light->removed && light->intensity > 0.0f &&
+           isfinite(light->intensity) &&
            (light->color[0] > 0.0f || light->color[1] > 0.0f || light->color[2] > 0.0f) &&
            scene->nodes[light->node].world_visible;
 }
 
-static void fill_light_block(struct light_block *block, const struct scene *scene, uint32_t id)
+static void fill_light_block(struct light_block *block, const struct resident *resident,
+                             uint32_t id)
 {
+    const struct scene *scene = resident->scene;
     const struct scene_light *light = &scene->lights[id];
     *block = (struct light_block){0};
     scene_get_light_placement(scene, id, block->position, block->direction);
+    resident_place(resident, block->position, block->position);
     static const float types[] = {
         [SCENE_LIGHT_DIRECTIONAL] = LIGHT_DIRECTIONAL,
         [SCENE_LIGHT_POINT] = LIGHT_POINT,
@@ -121,6 +132,30 @@ static void fill_light_block(struct light_block *block, const struct scene *scen
     block->shadow[2] = id;
 }
 
+// Whether one shadow map does for both: the same kind of lamp in the same place, which shines the
+// same way.
+static bool shares_shadow(const struct light_block *a, const struct light_block *b)
+{
+    bool turned = memcmp(a->direction, b->direction, sizeof(vec3)) != 0 || a->cone[2] != b->cone[2];
+    bool moved = memcmp(a->position, b->position, sizeof(vec3)) != 0;
+    return a->position[3] == b->position[3] && (!moved || a->position[3] == LIGHT_DIRECTIONAL) &&
+           (!turned || a->position[3] == LIGHT_POINT);
+}
+
+static bool share_shadow(const struct light_builder *builder, struct light_block *block)
+{
+    for (uint32_t i = 0; i < builder->layers; i++) {
+        const struct light_block *owner = builder->owners[i];
+        if (!owner || !shares_shadow(owner, block))
+            continue;
+        block->shadow[0] = owner->shadow[0];
+        block->shadow[1] = owner->shadow[1];
+        block->shadow[3] = owner->shadow[3];
+        return true;
+    }
+    return false;
+}
+
 static void add_light_shadow(struct light_builder *builder, struct light_block *block,
                              const struct scene_light *light)
 {
@@ -131,8 +166,13 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
     bool spot = light->type == SCENE_LIGHT_SPOT && fov < MAX_SPOT_SHADOW_FOV;
     bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
     uint32_t needed = directional || spot ? 1 : 6;
-    if (builder->layers + needed > MAX_SHADOW_LAYERS)
+    if (share_shadow(builder, block))
         return;
+    if (builder->layers + needed > MAX_SHADOW_LAYERS) {
+        resident->counts.unshadowed++;
+        return;
+    }
+    builder->owners[builder->layers] = block;
     block->shadow[0] = builder->layers;
     block->shadow[1] = needed;
     resident->counts.flat_shadows += needed == 1;
@@ -159,8 +199,10 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
 static void add_area_light_shadow(struct light_builder *builder, struct area_light_block *light)
 {
     light->shadow[0] = NO_SHADOW;
-    if (builder->layers + 6 > MAX_SHADOW_LAYERS)
+    if (builder->layers + 6 > MAX_SHADOW_LAYERS) {
+        builder->resident->counts.unshadowed++;
         return;
+    }
     light->shadow[0] = builder->layers;
     light->shadow[1] = 6;
     builder->resident->counts.cube_shadows++;
@@ -209,6 +251,7 @@ bool resident_upload_lights(struct resident *resident)
         struct resident_counts *counts = &resident->counts;
         counts->lights = 0;
         counts->ranged_lights = 0;
+        counts->unshadowed = 0;
         counts->flat_shadows = 0;
         counts->cube_shadows = 0;
         resident->directional_light = NO_SHADOW;
@@ -221,7 +264,7 @@ bool resident_upload_lights(struct resident *resident)
                 if (!light_is_lit(scene, light) || directional != (round == 0))
                     continue;
                 struct light_block *block = &lights[counts->lights++];
-                fill_light_block(block, scene, i);
+                fill_light_block(block, resident, i);
                 add_light_shadow(builder, block, light);
                 counts->ranged_lights += block->direction[3] > 0.0f;
             }

@@ -1,9 +1,31 @@
 #include "renderer/resident/resident.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "renderer/resident/triangle_tree.h"
+
+// Where the scene lies, rounded to multiples of a power of two about as large as it is.
+static void choose_origin(struct resident *resident)
+{
+    double low[3], high[3], extent = 0.0;
+    if (!scene_bounds(resident->scene, low, high))
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        extent = fmax(extent, high[axis] - low[axis]);
+    if (!(extent > 0.0) || !isfinite(extent))
+        return;
+    double step = exp2(ceil(log2(extent)) + 1.0);
+    for (int axis = 0; axis < 3; axis++)
+        resident->origin[axis] = step * round(0.5 * (low[axis] + high[axis]) / step);
+}
+
+void resident_place(const struct resident *resident, const float world[3], float out_place[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        out_place[axis] = (float)((double)world[axis] - resident->origin[axis]);
+}
 
 struct resident *resident_create(struct gpu *gpu, const struct scene *scene,
                                  struct error *out_error)
@@ -15,6 +37,7 @@ struct resident *resident_create(struct gpu *gpu, const struct scene *scene,
     }
     resident->gpu = gpu;
     resident->scene = scene;
+    choose_origin(resident);
     if (!resident_upload_geometry(resident) || !resident_upload_textures(resident) ||
         !resident_upload_materials(resident) || !resident_upload_instances(resident) ||
         !resident_upload_lights(resident) || !resident_upload_environment(resident)) {

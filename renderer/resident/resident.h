@@ -11,8 +11,10 @@
 #include "shared/blocks.h"
 
 #define SHADOW_MAP_EDGE 2048u
-// Nearest shadow caster of a lamp, relative to the scene's diagonal.
+// Nearest shadow caster of a lamp, relative to the scene's diagonal; and the most it is in m, or
+// something huge and far away would let nearer casters through.
 #define SHADOW_NEAR_FRACTION 1e-4f
+#define SHADOW_NEAR_MOST_M   1e-2f
 
 #define MAX_VIEW_CASCADES (RENDERER_MAX_VIEWS * MAX_CASCADES)
 
@@ -32,6 +34,7 @@ struct resident_cluster {
 
 struct resident_instance {
     uint32_t node;
+    float world_from_local[16]; // of the node, about the resident's origin
     uint32_t primitive;
     uint32_t index_first;
     uint32_t index_count;
@@ -42,8 +45,8 @@ struct resident_instance {
     bool visible;
     bool emits_directly; // all its emission reaches others as that of planar emitters
     bool large_emitter;  // of those, one that voxels hold better: see area_lights.c
-    float bounds_min[3]; // world
-    float bounds_max[3];
+    float bounds_min[3]; // world about the resident's origin; likewise wherever "world" is said
+    float bounds_max[3]; // below renderer.h
 };
 
 struct resident_counts {
@@ -53,6 +56,7 @@ struct resident_counts {
     uint32_t area_lights;
     uint32_t large_area_lights; // of those: see area_lights.c
     uint32_t shadow_layers;
+    uint32_t unshadowed;         // lights that shall cast shadows, but there is no layer left
     uint32_t flat_shadows;       // lights with one view
     uint32_t cube_shadows;       // lights with six
     uint32_t colored_primitives; // with vertex colours other than white
@@ -87,6 +91,9 @@ struct resident {
     const struct scene *scene;
     struct scene_revisions seen;
     struct resident_counts counts;
+    // All places on the GPU count from here: near the scene, 0 for scenes about the world's origin,
+    // and whole multiples of a power of two, so that moving there rounds nothing.
+    double origin[3];
 
     struct gpu_buffer *vertices;
     struct gpu_buffer *indices;
@@ -152,6 +159,12 @@ void resident_count_materials(struct resident *resident);
 // Makes resident->tree that of the geometry as it is now; cheap where it is already. False when
 // memory ends.
 bool resident_need_tree(struct resident *resident);
+
+// From the scene's world to that about the resident's origin; in place or not.
+void resident_place(const struct resident *resident, const float world[3], float out_place[3]);
+
+// Distance of the near plane of lamps' shadow views.
+float resident_shadow_near_m(const struct resident *resident);
 
 // Which space a texture slot reads from.
 int resident_texture_space(int slot);

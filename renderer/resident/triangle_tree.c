@@ -159,7 +159,7 @@ static void add_instance(struct tree_work *work, const struct resident_instance 
 {
     const struct scene *scene = work->resident->scene;
     const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
-    const float *matrix = scene->nodes[instance->node].world_from_local;
+    const float *matrix = instance->world_from_local;
     struct flat_triangle traits = {
         .opacity = opacity_of(work->resident, instance),
         .flags = (emits_directly(instance) ? TREE_LIT_DIRECTLY : 0) |

@@ -9,8 +9,7 @@ extern "C" {
 #include "renderer/scene/triangle_mesh.h"
 }
 
-#define GLTF_MAX_COORDINATE 1e15f // metres; beyond it, squares of lengths leave the range of floats
-#define GLTF_MAX_UV         1e6f
+#define GLTF_MAX_UV 1e6f
 
 enum gltf_mode {
     GLTF_MODE_TRIANGLES = 4,
@@ -98,9 +97,9 @@ static bool is_usable_position(const gltf_elements &positions, uint32_t index)
 {
     float position[3] = {};
     gltf_read_element(positions, index, position, 3);
-    return std::fabs(position[0]) <= GLTF_MAX_COORDINATE &&
-           std::fabs(position[1]) <= GLTF_MAX_COORDINATE &&
-           std::fabs(position[2]) <= GLTF_MAX_COORDINATE;
+    return std::fabs(position[0]) <= SCENE_MAX_COORDINATE_M &&
+           std::fabs(position[1]) <= SCENE_MAX_COORDINATE_M &&
+           std::fabs(position[2]) <= SCENE_MAX_COORDINATE_M;
 }
 
 // Triangle `index` of a list, strip or fan, wound as glTF 2.0, 3.7.2.1 says.
@@ -151,11 +150,12 @@ static void keep_triangles(gltf_import &import, const gltf_primitive &primitive,
             unusable++;
         }
     }
+    import.scene->rejects.triangles += (uint32_t)unusable;
     if (unusable > 0) {
         gltf_warn_once(import,
                        "%s: %zu triangles with positions that are not finite or beyond "
                        "%g m are dropped",
-                       primitive.place.c_str(), unusable, (double)GLTF_MAX_COORDINATE);
+                       primitive.place.c_str(), unusable, (double)SCENE_MAX_COORDINATE_M);
     }
 }
 

@@ -37,6 +37,7 @@ float gltf_clamped(gltf_import &import, double value, double low, double high, c
     if (value >= low && value <= high) {
         return (float)value;
     }
+    import.scene->rejects.parameters++;
     double clamped = std::isnan(value) ? low : std::clamp(value, low, high);
     gltf_warn_once(import, "%s %g is outside %g to %g: taken as %g", what, value, low, high,
                    clamped);

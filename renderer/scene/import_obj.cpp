@@ -16,9 +16,8 @@ extern "C" {
 #include "renderer/scene/triangle_mesh.h"
 }
 
-#define OBJ_MAX_COORDINATE 1e15f // metres; as for glTF
-#define OBJ_MAX_UV         1e6f
-#define OBJ_MAX_CORNERS    32768u // of one face: cutting it up may take time with the square
+#define OBJ_MAX_UV      1e6f
+#define OBJ_MAX_CORNERS 32768u // of one face: cutting it up may take time with the square
 
 #define OBJ_NO_INDEX INT64_MIN
 
@@ -192,7 +191,7 @@ static bool is_usable(const obj_document &document, const obj_face &face)
     for (uint32_t i = 0; i < face.corner_count; i++) {
         const obj_corner &corner = document.corners[face.corner_first + i];
         for (float value : document.positions[(size_t)corner.position].value) {
-            if (!(std::fabs(value) <= OBJ_MAX_COORDINATE)) {
+            if (!(std::fabs(value) <= SCENE_MAX_COORDINATE_M)) {
                 return false;
             }
         }
@@ -365,9 +364,10 @@ static void add_geometry(obj_document &document)
             if (is_usable(document, face)) {
                 add_face(document, batch, face);
             } else {
+                target->rejects.triangles++;
                 obj_warn_once(*document.import,
                               "faces with positions that are not finite or beyond %g m are dropped",
-                              (double)OBJ_MAX_COORDINATE);
+                              (double)SCENE_MAX_COORDINATE_M);
             }
         }
         if (batch.indices.empty()) {

@@ -171,6 +171,75 @@ static void primitive_compute_bounds(const struct scene *scene, struct scene_pri
     }
 }
 
+static bool is_somewhere(const float position[3])
+{
+    return fabsf(position[0]) <= SCENE_MAX_COORDINATE_M &&
+           fabsf(position[1]) <= SCENE_MAX_COORDINATE_M &&
+           fabsf(position[2]) <= SCENE_MAX_COORDINATE_M;
+}
+
+// Replaces values that are not finite; true if there was any.
+static bool mend_values(float *values, uint32_t count, float value)
+{
+    bool mended = false;
+    for (uint32_t i = 0; i < count; i++)
+        if (!isfinite(values[i])) {
+            values[i] = value;
+            mended = true;
+        }
+    return mended;
+}
+
+// Directions lose all their parts with one: those that are left point elsewhere.
+static bool mend_direction(float direction[3])
+{
+    bool mended = mend_values(direction, 3, 0.0f);
+    if (mended)
+        memset(direction, 0, 3 * sizeof(float));
+    return mended;
+}
+
+// Copies vertices; one that is nowhere comes to lie where `place` is, since no triangle keeps it.
+static void copy_vertices(struct scene *scene, const struct scene_vertex *vertices,
+                          uint32_t vertex_count)
+{
+    struct scene_vertex *target = scene->vertices + scene->vertex_count;
+    static const float origin[3] = {0};
+    const float *place = origin;
+    for (uint32_t i = 0; i < vertex_count && place == origin; i++)
+        if (is_somewhere(vertices[i].position))
+            place = vertices[i].position;
+    for (uint32_t i = 0; i < vertex_count; i++) {
+        target[i] = vertices[i];
+        if (!is_somewhere(target[i].position))
+            memcpy(target[i].position, place, sizeof(target[i].position));
+        bool mended = mend_direction(target[i].normal);
+        mended = mend_direction(target[i].tangent) || mended;
+        mended = mend_values(&target[i].tangent[3], 1, 1.0f) || mended;
+        mended = mend_values(&target[i].uv[0][0], 4, 0.0f) || mended;
+        mended = mend_values(target[i].color, 4, 1.0f) || mended;
+        scene->rejects.vertices += mended;
+    }
+}
+
+// Copies the triangles all of whose corners are somewhere. Returns the number of indices.
+static uint32_t copy_triangles(struct scene *scene, const struct scene_vertex *vertices,
+                               uint32_t vertex_count, const uint32_t *indices, uint32_t index_count)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < index_count; i += 3) {
+        bool usable = true;
+        for (uint32_t corner = i; corner < i + 3; corner++) {
+            assert(indices[corner] < vertex_count);
+            usable = usable && is_somewhere(vertices[indices[corner]].position);
+        }
+        scene->rejects.triangles += !usable;
+        for (uint32_t corner = i; corner < i + 3 && usable; corner++)
+            scene->indices[scene->index_count + kept++] = indices[corner] + scene->vertex_count;
+    }
+    return kept;
+}
+
 uint32_t scene_add_primitive(struct scene *scene, const struct scene_vertex *vertices,
                              uint32_t vertex_count, const uint32_t *indices, uint32_t index_count,
                              uint32_t material)
@@ -188,17 +257,13 @@ uint32_t scene_add_primitive(struct scene *scene, const struct scene_vertex *ver
         .mesh = scene->mesh_count - 1,
         .material = material,
         .index_first = scene->index_count,
-        .index_count = index_count,
         .vertex_first = scene->vertex_count,
         .vertex_count = vertex_count,
     };
-    memcpy(scene->vertices + scene->vertex_count, vertices, sizeof(*vertices) * vertex_count);
-    for (uint32_t i = 0; i < index_count; i++) {
-        assert(indices[i] < vertex_count);
-        scene->indices[scene->index_count + i] = indices[i] + scene->vertex_count;
-    }
+    copy_vertices(scene, vertices, vertex_count);
+    primitive->index_count = copy_triangles(scene, vertices, vertex_count, indices, index_count);
     scene->vertex_count += vertex_count;
-    scene->index_count += index_count;
+    scene->index_count += primitive->index_count;
     primitive_compute_bounds(scene, primitive);
     scene->meshes[scene->mesh_count - 1].primitive_count++;
     scene->revisions.geometry++;
@@ -225,31 +290,40 @@ uint32_t scene_add_node(struct scene *scene, const char *name, uint32_t parent)
     return scene->node_count++;
 }
 
-// A removed root node that nothing refers to, or a new one.
-static uint32_t take_root_node(struct scene *scene, const char *name)
+// The root node of a removed light that is to be used again, or a new one.
+static uint32_t take_root_node(struct scene *scene, uint32_t light, const char *name)
 {
-    for (uint32_t i = 0; i < scene->node_count; i++) {
-        struct scene_node *node = &scene->nodes[i];
-        if (!node->removed || node->parent != SCENE_NONE)
-            continue;
-        node->removed = false;
-        node->visible = true;
-        copy_name(node->name, sizeof(node->name), name);
-        scene->revisions.geometry++;
-        return i;
-    }
-    return scene_add_node(scene, name, SCENE_NONE);
+    uint32_t id = light < scene->light_count ? scene->lights[light].node : SCENE_NONE;
+    if (id == SCENE_NONE || !scene->nodes[id].removed || scene->nodes[id].parent != SCENE_NONE)
+        return scene_add_node(scene, name, SCENE_NONE);
+    struct scene_node *node = &scene->nodes[id];
+    node->removed = false;
+    node->visible = true;
+    copy_name(node->name, sizeof(node->name), name);
+    scene->revisions.geometry++;
+    return id;
+}
+
+// A place in the list of lights: a new one, or that of a removed light once there are many.
+static uint32_t find_light_place(const struct scene *scene)
+{
+    uint32_t removed = 0, first = scene->light_count;
+    for (uint32_t i = scene->light_count; i-- > 0;)
+        if (scene->lights[i].removed) {
+            removed++;
+            first = i;
+        }
+    bool is_full = scene->light_count == SCENE_MAX_LIGHTS;
+    return removed > SCENE_KEPT_LIGHTS || (is_full && removed > 0) ? first : scene->light_count;
 }
 
 uint32_t scene_add_light(struct scene *scene, const struct scene_light *light,
                          const float position[3], const float direction[3])
 {
-    uint32_t id = 0;
-    while (id < scene->light_count && !scene->lights[id].removed)
-        id++;
+    uint32_t id = find_light_place(scene);
     if (id == scene->light_count && !GROW(scene, lights, light, 1, SCENE_MAX_LIGHTS))
         return SCENE_NONE;
-    uint32_t node = take_root_node(scene, light->name);
+    uint32_t node = take_root_node(scene, id, light->name);
     if (node == SCENE_NONE)
         return SCENE_NONE;
     if (id == scene->light_count)

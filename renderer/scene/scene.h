@@ -13,6 +13,9 @@
 
 #define SCENE_NONE UINT32_MAX
 
+// Farther from the origin, squares of lengths leave the range of floats.
+#define SCENE_MAX_COORDINATE_M 1e15f
+
 // Limits. A file beyond them is refused with a message that names the limit.
 #define SCENE_MAX_VERTICES         (64u << 20)
 #define SCENE_MAX_INDICES          (192u << 20)
@@ -29,6 +32,9 @@
 #define SCENE_MAX_ALL_IMAGES_BYTES (2048ull << 20)
 #define SCENE_MAX_FILE_BYTES       (1024ull << 20)
 #define SCENE_MAX_WARNINGS         64u
+
+// So many removed lights keep their places, so that they can come back under their ids.
+#define SCENE_KEPT_LIGHTS 256u
 
 enum scene_wrap { SCENE_WRAP_REPEAT, SCENE_WRAP_CLAMP_TO_EDGE, SCENE_WRAP_MIRRORED_REPEAT };
 
@@ -207,6 +213,13 @@ struct scene_revisions {
     uint64_t environment;
 };
 
+// What the document did not take as it was offered: each is a value that would be wrong elsewhere.
+struct scene_rejects {
+    uint32_t triangles;  // left out, since a corner is nowhere or beyond SCENE_MAX_COORDINATE_M
+    uint32_t vertices;   // of whose directions, coordinates or colours some were no numbers
+    uint32_t parameters; // of materials, lights and cameras that a file has outside their range
+};
+
 struct scene {
     char name[128];
     char *source_path;   // canonical path, or "builtin:NAME"; owned
@@ -214,6 +227,7 @@ struct scene {
     uint32_t source_file_count;
     char *warnings[SCENE_MAX_WARNINGS]; // what the loader ignored or mended; owned
     uint32_t warning_count;
+    struct scene_rejects rejects;
     uint32_t missing_image_count; // pictures that could not be read, and were left out
 
     struct scene_vertex *vertices;
@@ -266,7 +280,9 @@ uint32_t scene_add_image(struct scene *scene, struct image *image);
 uint32_t scene_add_mesh(struct scene *scene, const char *name);
 
 // Appends a triangle list to the newest mesh. `indices` count from 0 within `vertices` and must be
-// below vertex_count; index_count is a multiple of 3. Computes the bounds. Copies everything.
+// below vertex_count; index_count is a multiple of 3. Computes the bounds. Copies everything but
+// what is not finite: triangles with such corners are left out, other values are 0 (colours 1), and
+// both are counted in scene->rejects.
 uint32_t scene_add_primitive(struct scene *scene, const struct scene_vertex *vertices,
                              uint32_t vertex_count, const uint32_t *indices, uint32_t index_count,
                              uint32_t material);
@@ -299,6 +315,10 @@ void scene_set_light_placement(struct scene *scene, uint32_t light, const float 
 void scene_get_light_placement(const struct scene *scene, uint32_t light, float out_position[3],
                                float out_direction[3]);
 void scene_remove_light(struct scene *scene, uint32_t light);
+
+// Brings a removed light back under its id. If another has been in its place meanwhile, it has the
+// other's values. False if it is not removed.
+bool scene_restore_light(struct scene *scene, uint32_t light);
 
 // Takes ownership of environment->pixels.
 void scene_set_environment(struct scene *scene, const struct scene_environment *environment);

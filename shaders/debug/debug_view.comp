@@ -89,8 +89,8 @@ vec3 debug_color(uvec2 pixel, surface s)
         return transfer(s.emission / (1.0 + s.emission));
     case VIEW_DEPTH: {
         float d = view_distance(texelFetch(depth_texture, ivec2(pixel), 0).r);
-        // Near white, far black, half at a third of the scene's diagonal (1e5 near planes).
-        return vec3(1.0 / (1.0 + d / (3.3e4 * frame.eye.w)));
+        // Near white, far black, half at a third of the scene's diagonal.
+        return vec3(1.0 / (1.0 + d / (0.33 * frame.environment.z)));
     }
     case VIEW_IDS:
         return number_color(texelFetch(ids, ivec2(pixel), 0).r);

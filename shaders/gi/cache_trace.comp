@@ -13,6 +13,8 @@ layout(std430, binding = BIND_VOXEL_COUNTERS) buffer voxel_counter_storage
     uint counters[];
 };
 
+#include "lib/voxel_cut.glsl"
+
 layout(std430, binding = BIND_CACHE_QUEUE) readonly buffer queue_storage
 {
     uint queue[];
@@ -85,7 +87,7 @@ void main()
     found.openness = face_light(words).a;
 #endif
     vec3 before = face_light(words).rgb;
-    vec3 light = min(found.light, vec3(65504.0));
+    vec3 light = cut_to_half(found.light);
     faces[words + FACE_LIGHT] = packHalf2x16(light.rg);
     faces[words + FACE_LIGHT + 1u] = packHalf2x16(vec2(light.b, found.openness));
     // Until neighbours are averaged, what is new shows itself.

@@ -27,10 +27,15 @@ float luminance(vec3 color)
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
+// The unit vector of any v, however long or short: squares of its parts may leave the range of floats.
+// `fallback` for one without a direction: 0, or not finite.
 vec3 safe_normalize(vec3 v, vec3 fallback)
 {
-    float squared = dot(v, v);
-    return squared > 1e-30 && !isinf(squared) ? v * inversesqrt(squared) : fallback;
+    vec3 size = abs(v);
+    float largest = max(size.x, max(size.y, size.z));
+    vec3 scaled = v * (1.0 / largest);
+    float squared = dot(scaled, scaled); // 1 to 3
+    return largest > 1e-37 && squared <= 3.0001 ? scaled * inversesqrt(squared) : fallback;
 }
 
 // Octahedral unit vectors (Cigolle et al. 2014, "A Survey of Efficient Representations for

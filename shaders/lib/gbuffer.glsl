@@ -1,6 +1,6 @@
 // The G-buffer: two uvec4 a pixel.
 //   0: base colour and metallic, specular weight; shading and geometric normal (octahedral)
-//   1: dielectric F0 and roughness; emission (fp16); occlusion; shading model
+//   1: dielectric F0 and roughness; emission (shared exponent); occlusion; shading model
 #include "lib/surface.glsl"
 
 layout(std430, binding = BIND_GBUFFER) buffer gbuffer_storage
@@ -15,6 +15,32 @@ uint pixel_index(uvec2 pixel)
     return pixel.y * frame.size.x + pixel.x;
 }
 
+// Three mantissas of 13 bits and a shared exponent of 8, in 32 + 15 bits: all that floats hold, to
+// 1/8191 of the brightest channel. The greatest exponent says that a channel is not finite.
+const int EMISSION_BIAS = 127;
+
+uvec2 pack_emission(vec3 emission)
+{
+    float brightest = max(emission.r, max(emission.g, emission.b));
+    int exponent;
+    frexp(brightest, exponent);
+    exponent = brightest > 0.0 ? max(exponent, 1 - EMISSION_BIAS) : 1 - EMISSION_BIAS;
+    uvec3 mantissa = min(uvec3(max(ldexp(emission, ivec3(-exponent)), 0.0) * 8192.0 + 0.5), 8191u);
+    bool finite = all(lessThan(floatBitsToUint(emission) & 0x7f800000u, uvec3(0x7f800000u)));
+    uint biased = finite ? uint(exponent + EMISSION_BIAS) : 255u;
+    return uvec2(mantissa.r | (mantissa.g << 13) | (mantissa.b << 26),
+                 (mantissa.b >> 6) | (biased << 7));
+}
+
+vec3 unpack_emission(uvec4 second)
+{
+    uint biased = (second.w >> 7) & 0xffu;
+    uvec3 mantissa = uvec3(second.z & 0x1fffu, (second.z >> 13) & 0x1fffu,
+                           (second.z >> 26) | ((second.w & 0x7fu) << 6));
+    vec3 emission = ldexp(vec3(mantissa) / 8192.0, ivec3(int(biased) - EMISSION_BIAS));
+    return biased == 255u ? vec3(uintBitsToFloat(0x7f800000u)) : emission;
+}
+
 void gbuffer_store(uvec2 pixel, surface s)
 {
     uint at = 2u * pixel_index(pixel);
@@ -23,11 +49,10 @@ void gbuffer_store(uvec2 pixel, surface s)
     gbuffer[at] = uvec4(packUnorm2x16(s.base_color.rg), blue_and_weights,
                         packSnorm2x16(octahedral_encode(s.normal)),
                         packSnorm2x16(octahedral_encode(s.geometric_normal)));
-    vec3 emission = min(s.emission, 65504.0);
-    uint blue_and_flags = (packHalf2x16(vec2(emission.b, 0.0)) & 0xffffu) |
-                          (uint(s.occlusion * 255.0 + 0.5) << 16) | (s.shading << 24);
-    gbuffer[at + 1u] = uvec4(packUnorm2x16(s.f0.rg), packUnorm2x16(vec2(s.f0.b, s.roughness)),
-                             packHalf2x16(emission.rg), blue_and_flags);
+    uvec2 emission = pack_emission(s.emission);
+    gbuffer[at + 1u] =
+        uvec4(packUnorm2x16(s.f0.rg), packUnorm2x16(vec2(s.f0.b, s.roughness)), emission.x,
+              emission.y | (uint(s.occlusion * 255.0 + 0.5) << 16) | (s.shading << 24));
 }
 
 void gbuffer_store_background(uvec2 pixel)
@@ -35,11 +60,6 @@ void gbuffer_store_background(uvec2 pixel)
     uint at = 2u * pixel_index(pixel);
     gbuffer[at] = uvec4(0u);
     gbuffer[at + 1u] = uvec4(0u, 0u, 0u, SHADE_BACKGROUND << 24);
-}
-
-vec3 unpack_emission(uvec4 second)
-{
-    return vec3(unpackHalf2x16(second.z), unpackHalf2x16(second.w).x);
 }
 
 // Of a background pixel, only `shading`, `view` and `emission` (black) mean something.

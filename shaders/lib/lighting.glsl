@@ -28,9 +28,6 @@ layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 };
 #endif
 
-// Nearer than this to a light (1 mm) the inverse square no longer grows.
-const float MIN_LIGHT_DISTANCE_SQUARED = 1e-6;
-
 #if SOFT_SHADOWS
 // Share of a light of a size that reaches a point, by a cone towards it; `hard` is what a shadow map
 // says of its middle. Voxels know nothing of what is nearer than they are large, but where penumbrae
@@ -60,7 +57,7 @@ float soft_visibility(float hard, vec3 position, vec3 normal, vec3 to_light, flo
 #if PUNCTUAL_LIGHTS
 float distance_attenuation(float squared, float range_m)
 {
-    float attenuation = 1.0 / max(squared, MIN_LIGHT_DISTANCE_SQUARED);
+    float attenuation = 1.0 / max(squared, frame.environment.w);
     if (range_m > 0.0) {
         float ratio = squared / (range_m * range_m);
         attenuation *= clamp(1.0 - ratio * ratio, 0.0, 1.0);
@@ -126,7 +123,7 @@ float quad_form_factor(vec3 corners[4], vec3 n)
     vec3 directions[4];
     float heights[4];
     for (int i = 0; i < 4; i++) {
-        directions[i] = normalize(corners[i]);
+        directions[i] = safe_normalize(corners[i], n);
         heights[i] = dot(corners[i], n);
     }
     float sum = 0.0;
@@ -138,7 +135,7 @@ float quad_form_factor(vec3 corners[4], vec3 n)
         bool next_above = heights[next] > 0.0;
         bool crosses = above != next_above;
         float t = crosses ? heights[i] / (heights[i] - heights[next]) : 0.0;
-        vec3 crossing = normalize(mix(corners[i], corners[next], t));
+        vec3 crossing = safe_normalize(mix(corners[i], corners[next], t), n);
         vec3 from = above ? directions[i] : crossing;
         vec3 to = next_above ? directions[next] : crossing;
         sum += above || next_above ? edge_integral(from, to, n) : 0.0;
@@ -169,7 +166,7 @@ vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reve
     vec2 at = clamp(vec2(vv * dot(d, u) - uv * dot(d, v), uu * dot(d, v) - uv * dot(d, u)) * scale,
                     0.0, 1.0);
     vec3 nearest = corners[0] + u * at.x + v * at.y;
-    float squared = max(dot(nearest, nearest), MIN_LIGHT_DISTANCE_SQUARED);
+    float squared = max(dot(nearest, nearest), frame.environment.w);
     vec3 l = nearest * inversesqrt(squared);
     float cosine = max(-dot(l, normal), 0.0);
     float alpha = alpha_of(s);

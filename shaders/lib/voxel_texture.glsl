@@ -1,6 +1,7 @@
 // Writes the radiance texture: premultiplied by optical depth, rgb = radiance * depth / scale and
 // a = optical depth across a voxel, so that filtering keeps what lies behind each other apart.
 #include "lib/voxel.glsl"
+#include "lib/voxel_cut.glsl"
 
 layout(binding = IMAGE_VOXEL_RADIANCE, rgba16f) uniform image3D voxel_image;
 
@@ -11,7 +12,7 @@ void store_voxel_face(uint level, ivec3 address, uint face, vec4 value)
     ivec4 texels = voxels.levels[level].texels;
     int edge = voxels.levels[level].origin.w;
     ivec3 base = texels.xyz + ivec3(texels.w * int(face), 0, 0);
-    value.rgb = min(value.rgb, vec3(65504.0));
+    value.rgb = cut_to_half(value.rgb);
     imageStore(voxel_image, base + address, value);
     if (voxels.levels[level].index.z == 0u)
         return;

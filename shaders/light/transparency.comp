@@ -4,8 +4,10 @@
 // A layer covers `alpha` of the pixel. Its diffuse part lets the share `transmission` through
 // unscattered, tinted by base colour (KHR_materials_transmission, thin-walled) and absorbed along
 // its thickness (KHR_materials_volume); its specular part reflects.
+#define CELLS_ACCESS readonly
 #include "lib/geometry.glsl"
 #include "lib/lighting.glsl"
+#include "lib/irradiance_read.glsl"
 #include "lib/environment.glsl"
 #include "lib/gloss.glsl"
 #include "lib/radiance.glsl"
@@ -86,8 +88,15 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
     sum += direct_light(s, pixel);
 #endif
 #if VOXEL_LIGHT
+    float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
+    vec3 diffuse = s.base_color * ((1.0 - s.metallic) * mean_diffuse_share(s, n_v));
+    vec4 around = cached_irradiance(s.position, s.geometric_normal);
+#if AMBIENT_OCCLUSION
+    diffuse *= around.a;
+#endif
+    sum += diffuse * around.rgb * (s.occlusion * voxels.anchor.w * voxels.light.y);
     vec3 mirror = reflect(-s.view, s.normal);
-    vec2 scale_bias = environment_brdf(s.roughness, clamp(dot(s.normal, s.view), 0.0, 1.0));
+    vec2 scale_bias = environment_brdf(s.roughness, n_v);
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     vec3 reflected = f0 * scale_bias.x + mix(s.f90, 1.0, s.metallic) * scale_bias.y;
     sum += reflected * trace_gloss(s.position, s.geometric_normal, mirror, s.roughness);

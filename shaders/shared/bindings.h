@@ -36,7 +36,9 @@
 #define BIND_CACHE_QUEUE    26
 #define BIND_INDIRECT       27
 #define BIND_FACES          28
-#define STORAGE_BINDINGS    29
+#define BIND_CHECK          29 // of shaders/debug/finite_check.comp alone, likewise the next
+#define BIND_CHECKED        30
+#define STORAGE_BINDINGS    31
 
 // Image units
 #define IMAGE_VOXEL_RADIANCE 0
@@ -53,6 +55,7 @@
 #define UNIT_BACKGROUND       15
 #define UNIT_TREE_NODES       16
 #define UNIT_TREE_TRIANGLES   17
+#define UNIT_CHECKED          18
 
 // A tree of boxes over the scene's triangles, for rays: TREE_NODE_TEXELS texels of 4 words a node
 // and TREE_TRIANGLE_TEXELS a triangle, in rows of 2^TREE_ROW_BITS texels. A node has for each of
@@ -102,6 +105,11 @@
 
 // Cube faces and spots see a little more than they need, for the filter's taps at the rim.
 #define SHADOW_FACE_MARGIN 1.02f
+
+// A lamp is never nearer to what it lights than this share of the scene's diagonal, nor than so many
+// metres where that is more: its light would have no end.
+#define LAMP_LEAST_SHARE 1e-4f
+#define LAMP_LEAST_M     1e-3f
 
 #define MAX_AREA_LIGHTS    16
 #define MAX_SHADOW_LAYERS  32

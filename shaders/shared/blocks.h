@@ -20,7 +20,8 @@ struct frame_block {
                       // the sun, shadow taps, tone map
     vec4 display;     // exposure scale (0: automatic), gamma (0: sRGB), exposure bias, 1 if all
                       // materials are to be Blinn-Phong
-    vec4 environment; // intensity, rotation about +Y, unused, unused
+    vec4 environment; // intensity, rotation about +Y, diagonal of the scene in m, square
+                      // of the least distance of lamps
     vec4 textures;    // most samples of an anisotropic look-up, near plane of lamps' shadow views,
                       // 1 if samplers read one level only and want dithering, roughness beyond
                       // which no surface has a reflection of its own

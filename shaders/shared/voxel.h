@@ -50,13 +50,13 @@
 #define SURFEL_KEY          1u // surface * 8 + face
 #define SURFEL_MASK         2u // bit x + 2 y + 4 z for each half of the voxel that is overlapped
 #define SURFEL_WEIGHT       3u
-#define SURFEL_NORMAL       4u   // 3 sums of weight * normal * 127
-#define SURFEL_PLACE        7u   // 3 sums of weight * place in the voxel * 255
-#define SURFEL_OPACITY      10u  // sum of weight * alpha * 255
-#define SURFEL_COLOR        11u  // 3 sums of weight * base colour texture * 255
-#define SURFEL_EMISSION     14u  // 3 sums of weight * emissive texture * 255
-#define SURFEL_WEIGHT_SCALE 64.0 // per square of the voxel's edge; at least 1 a triangle
-// Beyond this weight no more is added: 255 times as much fits into 31 bits. More than 70,000
+#define SURFEL_NORMAL       4u    // 3 sums of weight * normal * 127
+#define SURFEL_PLACE        7u    // 3 sums of weight * place in the voxel * 255
+#define SURFEL_OPACITY      10u   // sum of weight * alpha * 255
+#define SURFEL_COLOR        11u   // 3 sums of weight * base colour texture * 255
+#define SURFEL_EMISSION     14u   // 3 sums of weight * emissive texture * 255
+#define SURFEL_WEIGHT_SCALE 512.0 // per square of the voxel's edge; at least 1 a triangle
+// Beyond this weight no more is added: 255 times as much fits into 31 bits. More than 15,000
 // triangles of one surface that cross a voxel all over make up the mean by then.
 #define SURFEL_WEIGHT_MAX 8000000u
 
@@ -68,6 +68,7 @@
 #define COUNTER_FREE_SURFELS     3
 #define COUNTER_RETURNED_SURFELS 4
 #define COUNTER_OVERFLOW         5 // bits, as OVERFLOW_ says
+#define COUNTER_CUT              6 // values beyond what half floats hold, since the volume was made
 #define COUNTER_CACHE_LEFT       7 // faces that the newest selection left stale
 #define COUNTER_CACHE_CHANGE     8 // largest relative change of a face this generation (float)
 #define COUNTER_CACHE_TRACED     9

@@ -2,6 +2,12 @@
 // light is as it was. In: list of cells, face records. Out: radiance texture.
 #define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
+
+layout(std430, binding = BIND_VOXEL_COUNTERS) buffer voxel_counter_storage
+{
+    uint counters[];
+};
+
 #include "lib/voxel_radiate.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
@@ -9,11 +15,6 @@ layout(local_size_x = LINEAR_GROUP) in;
 layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
 {
     uint list_words[];
-};
-
-layout(std430, binding = BIND_VOXEL_COUNTERS) readonly buffer voxel_counter_storage
-{
-    uint counters[];
 };
 
 void main()

@@ -185,9 +185,12 @@ void main()
         // In proportion to what is covered: the parts of a slanted wall that lie in neighbouring
         // voxels then add up to a whole one.
         float opacity = min(sides[i].opacity * inverse, 1.0);
-        float depth = coverage(sides[i].mask, i >> 1u) *
+        // Halves that are touched overstate what hardly covers them, such as slivers.
+        float covered = min(coverage(sides[i].mask, i >> 1u),
+                            sides[i].weight / float(SURFEL_WEIGHT_SCALE));
+        float depth = covered *
                       min(-log(max(1.0 - opacity, 1e-9)), float(VOXEL_MAX_DEPTH));
-        direct = min(direct, vec3(65504.0));
+        direct = cut_to_half(direct);
         uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
         uvec3 packed_albedo = uvec3(albedo * 1023.0 + 0.5);
         faces[words + FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));

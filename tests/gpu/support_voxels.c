@@ -62,6 +62,7 @@ static struct frame begin(struct voxel_rig *rig, struct voxel_volume *volume)
         .resident = rig->resident,
         .view = rig->view,
         .params = &rig->params,
+        .camera = rig->params.camera,
         .quality = &quality_levels[QUALITY_FINAL],
         .volume = volume,
     };

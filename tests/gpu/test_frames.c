@@ -315,7 +315,7 @@ static void test_bad_parameters_are_refused(void **state)
     struct frame_params params = test_params(0, 32, FRAME_OUTPUT_YCBCR);
     assert_int_equal(renderer_view_draw(renderer, view, &params, &error), RENDER_FAILED);
     assert_non_null(strstr(error.message, "0x32"));
-    assert_non_null(strstr(error.message, "3840x2160"));
+    assert_non_null(strstr(error.message, "4096x2160"));
     params = test_params(32, 32, FRAME_OUTPUT_YCBCR);
     params.camera.eye[1] = NAN;
     assert_int_equal(renderer_view_draw(renderer, view, &params, &error), RENDER_FAILED);

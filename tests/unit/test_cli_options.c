@@ -90,7 +90,7 @@ static void test_wrong_values_are_refused(void **state)
     (void)state;
     static const char *const lines[] = {
         "a b c",          "--bogus",           "--out",         "--size 0x9",
-        "--size 3841x1",  "--size 12x12x",     "--frames 0",    "--frames 1.5",
+        "--size 4097x1",  "--size 12x12x",     "--frames 0",    "--frames 1.5",
         "--frames 101",   "--frames nan",      "--frames 3x",   "--eye 1,2",
         "--eye 1,2,inf",  "--until-noise 2",   "--gi lpv",      "--preset best",
         "--view nothing", "--fov-y-deg 179.5", "--set novalue", "--until-noise nan",

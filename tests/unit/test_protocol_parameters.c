@@ -148,7 +148,7 @@ static void wrong_values_are_refused(void **state)
     refuse(GROUP_LIGHT, "type", "\"sun\"", "is not one of directional, point, spot");
     refuse(GROUP_LIGHT, "enabled", "1", "true or false");
     refuse(GROUP_VIEW, "width", "640.5", "whole number");
-    refuse(GROUP_VIEW, "width", "3841", "allowed are 1 to 3840");
+    refuse(GROUP_VIEW, "width", "4097", "allowed are 1 to 4096");
     refuse(GROUP_NODE, "rotation", "[0,0,0,\"1\"]", "made of numbers");
     refuse(GROUP_NODE, "name",
            "\"0123456789012345678901234567890123456789012345678901234567890123\"",

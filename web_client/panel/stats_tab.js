@@ -36,6 +36,7 @@ export class StatsTab {
     this.stages = element('ul', { class: 'bars', 'aria-label': 'Stages' });
     this.effects = makeEffectList();
     this.memory = element('ul', { class: 'bars', 'aria-label': 'Memory' });
+    this.rejects = element('dl', { class: 'info figures', 'aria-label': 'Clamped and left out' });
     const charts = element('div', {});
     const section = (/** @type {string} */ title, /** @type {HTMLElement} */ content) => [element('h2', {}, title), content];
     root.append(
@@ -47,6 +48,7 @@ export class StatsTab {
       ...section('From change to screen', this.stages),
       ...section('Effects', this.effects),
       ...section('Graphics memory', this.memory),
+      ...section('Clamped and left out', this.rejects),
     );
     this.rateChart = new Chart(charts, { title: 'Frame rate', unit: 'fps', color: '#6fb1ff' });
     this.photonChart = new Chart(charts, { title: 'Edit to photon', unit: 'ms', color: '#ffc46b' });
@@ -113,7 +115,7 @@ export class StatsTab {
   }
 
   #drawStats() {
-    const { passes, stages_ms, effects, memory, bottleneck } = this.stats;
+    const { passes, stages_ms, effects, memory, rejects, bottleneck } = this.stats;
     this.bottleneck.textContent = BOTTLENECKS[bottleneck] ?? wordsOf(bottleneck);
     this.bottleneck.dataset.stage = bottleneck;
     const times = (/** @type {number} */ ms) => `${ms.toFixed(1)} ms`;
@@ -130,6 +132,12 @@ export class StatsTab {
       bytes,
     );
     showEffects(this.effects, effects);
+    this.rejects.replaceChildren(
+      ...rejects.flatMap((/** @type {any} */ { name, count }) => [
+        element('dt', {}, wordsOf(name)),
+        element('dd', {}, String(count)),
+      ]),
+    );
   }
 
   #drawBars(

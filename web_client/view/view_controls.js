@@ -25,7 +25,7 @@ export class ViewControls extends EventTarget {
     this.options = {};
     /** Name of the measured setting that draws this view; "": the shared settings do. */
     this.rung = '';
-    this.server = { isSoftware: false, maxWidth: 3840, maxHeight: 2160 };
+    this.server = { isSoftware: false, maxWidth: 4096, maxHeight: 2160 };
     /** @type {number | undefined} */
     this.timer = undefined;
     new ResizeObserver(() => {

@@ -1,0 +1,77 @@
+// Counts values that are not finite. In: a resource. Out: how many there are in it, and where the
+// first is.
+//
+// TEXTURE 0: a buffer of records, of which masks tell the words that are floats and those of which
+// the low or the high half is a half float. TEXTURE 1, 2, 3: a 2D texture, an array, a 3D texture of
+// floats.
+#include "shared/bindings.h"
+#include "shared/types.h"
+
+layout(local_size_x = LINEAR_GROUP) in;
+
+layout(std430, binding = BIND_CHECK) buffer check_storage
+{
+    uvec4 shape; // words or texels, words of a record, result to write, level of a texture
+    uvec4 masks; // of a record's words: floats, low halves, high halves; the last bit tells of the rest
+    uvec4 results[]; // values that are not finite, the first, -, -
+} check;
+
+#if TEXTURE == 0
+layout(std430, binding = BIND_CHECKED) readonly buffer checked_storage
+{
+    uint words[];
+};
+#elif TEXTURE == 1
+layout(binding = UNIT_CHECKED) uniform sampler2D checked;
+#elif TEXTURE == 2
+layout(binding = UNIT_CHECKED) uniform sampler2DArray checked;
+#else
+layout(binding = UNIT_CHECKED) uniform sampler3D checked;
+#endif
+
+// By its bits: compilers may take floats to be finite.
+uint float_is_bad(uint bits)
+{
+    return (bits & 0x7f800000u) == 0x7f800000u ? 1u : 0u;
+}
+
+uint half_is_bad(uint bits)
+{
+    return (bits & 0x7c00u) == 0x7c00u ? 1u : 0u;
+}
+
+uint count_bad(uint at)
+{
+#if TEXTURE == 0
+    uint bit = 1u << min(at % check.shape.y, 31u);
+    uint word = words[at];
+    return ((check.masks.x & bit) != 0u ? float_is_bad(word) : 0u) +
+           ((check.masks.y & bit) != 0u ? half_is_bad(word) : 0u) +
+           ((check.masks.z & bit) != 0u ? half_is_bad(word >> 16) : 0u);
+#else
+    int level = int(check.shape.w);
+    uint width = uint(textureSize(checked, level).x);
+    uint height = uint(textureSize(checked, level).y);
+    ivec3 place = ivec3(at % width, at / width % height, at / width / height);
+#if TEXTURE == 1
+    vec4 texel = texelFetch(checked, place.xy, level);
+#else
+    vec4 texel = texelFetch(checked, place, level);
+#endif
+    uvec4 bits = floatBitsToUint(texel);
+    return float_is_bad(bits.x) + float_is_bad(bits.y) + float_is_bad(bits.z) +
+           float_is_bad(bits.w);
+#endif
+}
+
+void main()
+{
+    uint stride = gl_NumWorkGroups.x * LINEAR_GROUP;
+    for (uint at = gl_GlobalInvocationID.x; at < check.shape.x; at += stride) {
+        uint bad = count_bad(at);
+        if (bad > 0u) {
+            atomicAdd(check.results[check.shape.z].x, bad);
+            atomicMin(check.results[check.shape.z].y, at);
+        }
+    }
+}

@@ -1,0 +1,11 @@
+// What half floats cannot hold is cut, and counted. `counters` must be declared, and be writable.
+#include "shared/voxel.h"
+
+const float LARGEST_HALF = 65504.0;
+
+vec3 cut_to_half(vec3 value)
+{
+    if (!all(lessThanEqual(value, vec3(LARGEST_HALF)))) // NaN, too
+        atomicAdd(counters[COUNTER_CUT], 1u);
+    return min(value, vec3(LARGEST_HALF));
+}

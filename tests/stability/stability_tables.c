@@ -1,0 +1,12 @@
+// The families, in the order in which they are run.
+#include "tests/stability/stability.h"
+
+extern const struct stability_table stability_geometry, stability_place, stability_camera,
+    stability_light, stability_material, stability_hostile;
+
+const struct stability_table *const stability_tables[] = {
+    &stability_geometry, &stability_place,    &stability_camera,
+    &stability_light,    &stability_material, &stability_hostile,
+};
+
+const uint32_t stability_table_count = sizeof(stability_tables) / sizeof(stability_tables[0]);
