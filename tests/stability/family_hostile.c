@@ -15,6 +15,7 @@
 #include "tests/stability/mutation.h"
 #include "tests/stability/scene_check.h"
 #include "tests/stability/stability.h"
+#include "voxcast_paths.h"
 
 #define FILE_MUTATIONS    10000u
 #define MESSAGE_MUTATIONS 20000u
