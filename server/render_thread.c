@@ -196,7 +196,7 @@ static bool open_renderer(struct render_thread *thread)
 // For tests: the context is lost at that frame.
 static void inject_fault(struct render_thread *thread)
 {
-    const char *frame = getenv("VOXCASTD_LOSE_CONTEXT");
+    const char *frame = getenv("VOXCAST_LOSE_CONTEXT");
     if (frame)
         renderer_inject_fault(thread->renderer, RENDERER_FAULT_CONTEXT, strtoull(frame, NULL, 10));
 }
