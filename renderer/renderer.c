@@ -15,6 +15,7 @@
 #include "renderer/resident/resident.h"
 #include "renderer/resident/triangle_tree.h"
 #include "renderer/view.h"
+#include "voxcast_paths.h"
 
 // Nearest visible distance, relative to the scene's diagonal, and the most it is in m: what is near
 // is to be seen however far the scene reaches. Reversed Z keeps precision anyway.
@@ -32,6 +33,7 @@ struct renderer {
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
     struct live_scene live_scene; // of references
+    bool lost;                    // the GL context
     bool (*may_draw)(void *user); // NULL: always
     void *user;
 };
@@ -88,6 +90,21 @@ void renderer_destroy(struct renderer **renderer_slot)
 const struct renderer_info *renderer_get_info(const struct renderer *renderer)
 {
     return gpu_get_info(renderer->gpu);
+}
+
+void renderer_inject_fault(struct renderer *renderer, enum renderer_fault fault, uint64_t number)
+{
+    gpu_inject_fault(renderer->gpu, fault, number);
+}
+
+uint64_t renderer_fault_left(const struct renderer *renderer, enum renderer_fault fault)
+{
+    return gpu_fault_left(renderer->gpu, fault);
+}
+
+bool renderer_is_lost(const struct renderer *renderer)
+{
+    return renderer->lost;
 }
 
 uint64_t renderer_gl_error_count(const struct renderer *renderer)
@@ -330,6 +347,11 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
 {
     if (!renderer_may_draw(renderer)) {
         error_set(out_error, "no more frames are wanted");
+        return RENDER_FAILED;
+    }
+    renderer->lost = gpu_is_lost(renderer->gpu);
+    if (renderer->lost) {
+        error_set(out_error, "the driver has lost the GL context");
         return RENDER_FAILED;
     }
     double started_ms = gpu_clock_ms(renderer->gpu);

@@ -55,6 +55,24 @@ struct renderer *renderer_create(const struct renderer_params *params, struct er
 void renderer_destroy(struct renderer **renderer);
 const struct renderer_info *renderer_get_info(const struct renderer *renderer);
 
+// Faults of drivers and machines, for tests.
+enum renderer_fault {
+    RENDERER_FAULT_ALLOCATION, // of a buffer or texture: there is no more memory
+    RENDERER_FAULT_PROGRAM,    // of compiling shaders
+    RENDERER_FAULT_CONTEXT,    // of drawing a frame: the context is lost
+    RENDERER_FAULT_COUNT
+};
+
+// Makes the `number`th such event from now on fail, once; 0: none.
+void renderer_inject_fault(struct renderer *renderer, enum renderer_fault fault, uint64_t number);
+
+// Events until then; 0 if it has happened or none is to.
+uint64_t renderer_fault_left(const struct renderer *renderer, enum renderer_fault fault);
+
+// Whether the driver has lost the GL context, as when a GPU has been reset: every frame fails, and
+// only another renderer can draw. Known once a frame has failed.
+bool renderer_is_lost(const struct renderer *renderer);
+
 // Errors that GL reported through its debug callback since creation; tests want 0.
 uint64_t renderer_gl_error_count(const struct renderer *renderer);
 

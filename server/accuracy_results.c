@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "server/accuracy.h"
+#include "voxcast_paths.h"
 
 #define MAX_RESULT_BYTES (64u << 20)
 

@@ -146,6 +146,8 @@ static bool tell(void *user, const struct accuracy_progress *progress)
 static bool open_renderer(struct accuracy_service *service, struct accuracy_session *session,
                           struct error *out_error)
 {
+    if (service->renderer && renderer_is_lost(service->renderer))
+        renderer_destroy(&service->renderer);
     if (!service->renderer)
         service->renderer = renderer_create(&(struct renderer_params){.gpu = service->params.gpu,
                                                                       .may_draw = may_draw,

@@ -52,6 +52,18 @@ static void record(struct edit_history *history, struct edit_step *step)
     history->position = history->count;
 }
 
+// All values of a light, so that it can come back as it was.
+static void capture_light(const struct document *document, struct edit_step *step,
+                          struct parameter_value values[COMMAND_MAX_VALUES])
+{
+    struct rpc_error error;
+    step->value_count = 0;
+    for (size_t i = 0; i < parameter_count() && step->value_count < COMMAND_MAX_VALUES; i++)
+        if (parameter_at(i)->group == GROUP_LIGHT &&
+            document_has(document, GROUP_LIGHT, step->target, &error))
+            document_get(document, parameter_at(i), step->target, &values[step->value_count++]);
+}
+
 static struct edit_step *create_step(const struct document *document, const struct command *command)
 {
     struct edit_step *step = calloc(1, sizeof(*step));
@@ -61,6 +73,8 @@ static struct edit_step *create_step(const struct document *document, const stru
     step->target = command->target;
     step->open = command->transient;
     enum parameter_group group = method_get_group(command->method);
+    if (command->method == METHOD_LIGHT_REMOVE)
+        capture_light(document, step, step->before);
     if (command->method == METHOD_LIGHT_ADD || group == GROUP_COUNT)
         return step;
     uint32_t id = command->target == COMMAND_NO_TARGET ? 0 : command->target;
@@ -156,16 +170,31 @@ static cJSON *describe_added_light(const struct document *document, const struct
     return edit;
 }
 
-// Brings a removed light back under its id; the opposite of scene_remove_light().
-static void restore_light(struct scene *scene, uint32_t id)
+static bool is_set(const struct document *document, uint32_t id,
+                   const struct parameter_value *value)
 {
-    struct scene_light *light = &scene->lights[id];
-    light->removed = false;
-    scene->nodes[light->node].light = id;
-    scene->nodes[light->node].removed = false;
-    scene->revisions.lights++;
-    scene->revisions.geometry++;
-    scene_update_world_transforms(scene);
+    struct parameter_value now = {0};
+    document_get(document, value->parameter, id, &now);
+    return memcmp(now.numbers, value->numbers, sizeof(now.numbers)) == 0 &&
+           strcmp(now.text, value->text) == 0;
+}
+
+// Brings a removed light back under its id, with the values of the command: another one may have
+// been in its place. What is as it was is left alone, since setting places rounds.
+static bool restore_light(const struct document *document, struct command *command,
+                          struct rpc_error *error)
+{
+    uint32_t id = command->target, changed = 0;
+    if (!scene_restore_light(document->scene, id))
+        return rpc_error_set(error, RPC_INVALID_PARAMS, "another light has the place of light %u",
+                             id);
+    for (uint32_t i = 0; i < command->value_count; i++)
+        if (!is_set(document, id, &command->values[i]))
+            command->values[changed++] = command->values[i];
+    if (changed == 0 || document_set(document, GROUP_LIGHT, id, command->values, changed, error))
+        return true;
+    scene_remove_light(document->scene, id);
+    return false;
 }
 
 static cJSON *add_light(const struct document *document, struct command *command, cJSON *result,
@@ -178,7 +207,8 @@ static cJSON *add_light(const struct document *document, struct command *command
     }
     uint32_t id = command->target; // of a removed light, when an undo or redo brings it back
     if (id != COMMAND_NO_TARGET) {
-        restore_light(scene, id);
+        if (!restore_light(document, command, error))
+            return NULL;
     } else {
         struct scene_light light;
         scene_light_init(&light, SCENE_LIGHT_POINT, "light");
@@ -256,8 +286,13 @@ static bool undo_or_redo(const struct document *document, struct edit_history *h
     }
     // A step that cannot be replayed, because another client removed what it changed, is passed.
     uint32_t step = backwards ? --history->position : history->position++;
-    history->steps[step]->open = false;
-    return replay(document, history->steps[step], backwards, result, out_edit, error);
+    struct edit_step *it = history->steps[step];
+    it->open = false;
+    if (it->method == METHOD_LIGHT_ADD && backwards)
+        capture_light(document, it, it->after);
+    if (it->method == METHOD_LIGHT_REMOVE && !backwards)
+        capture_light(document, it, it->before);
+    return replay(document, it, backwards, result, out_edit, error);
 }
 
 bool edit_apply(const struct document *document, struct edit_history *history,

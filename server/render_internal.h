@@ -108,6 +108,9 @@ void render_reset_camera(const struct scene *scene, struct view_camera *camera);
 struct render_client *render_find_client(struct render_thread *thread, uint32_t client_id);
 struct render_client *render_add_client(struct render_thread *thread, uint32_t client_id);
 void render_remove_gone_clients(struct render_thread *thread, bool all);
+// What clients have of a renderer that ends, and of the next one. False when memory ends.
+void render_drop_views(struct render_thread *thread);
+bool render_renew_views(struct render_thread *thread);
 
 // Something may look different to one client, or to all with NULL: frames are drawn until the
 // renderer says that nothing has changed. Moving does the same and lowers the quality for a while.

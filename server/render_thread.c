@@ -193,18 +193,50 @@ static bool open_renderer(struct render_thread *thread)
     return true;
 }
 
+// For tests: the context is lost at that frame.
+static void inject_fault(struct render_thread *thread)
+{
+    const char *frame = getenv("VOXCAST_LOSE_CONTEXT");
+    if (frame)
+        renderer_inject_fault(thread->renderer, RENDERER_FAULT_CONTEXT, strtoull(frame, NULL, 10));
+}
+
+// Takes another renderer for one whose GL context is lost. The document and all clients stay.
+static void renew_renderer(struct render_thread *thread)
+{
+    struct error error = {""};
+    log_write(LOG_ERROR, "context_lost");
+    render_drop_views(thread);
+    renderer_destroy(&thread->renderer);
+    if (!open_renderer(thread)) {
+        atomic_store(&thread->stop, true);
+        return;
+    }
+    if ((thread->scene && !renderer_set_scene(thread->renderer, thread->scene, &error)) ||
+        !render_renew_views(thread)) {
+        log_write(LOG_ERROR, "renderer_failed reason=\"%s\"", error.message);
+        atomic_store(&thread->stop, true);
+        thread->params.failed(thread->params.user);
+    }
+}
+
 static void *run(void *user)
 {
     struct render_thread *thread = user;
     if (!open_renderer(thread))
         return NULL;
+    inject_fault(thread);
     const char *source = thread->params.scene_source;
     const char *slash = strrchr(source, '/');
     render_start_load(thread, source, slash ? slash + 1 : source, NULL);
-    while (!atomic_load(&thread->stop))
+    while (!atomic_load(&thread->stop)) {
         turn(thread);
+        if (thread->renderer && renderer_is_lost(thread->renderer))
+            renew_renderer(thread);
+    }
     render_remove_gone_clients(thread, true);
-    renderer_destroy(&thread->renderer);
+    if (thread->renderer)
+        renderer_destroy(&thread->renderer);
     scene_destroy(&thread->scene);
     return NULL;
 }

@@ -45,6 +45,34 @@ struct render_client *render_add_client(struct render_thread *thread, uint32_t c
     return NULL;
 }
 
+void render_drop_views(struct render_thread *thread)
+{
+    for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
+        struct render_client *client = &thread->clients[slot];
+        if (client->drawing)
+            frame_stream_finish(thread->params.stream, slot, NULL);
+        client->drawing = false;
+        if (client->view)
+            renderer_view_destroy(thread->renderer, &client->view);
+    }
+}
+
+bool render_renew_views(struct render_thread *thread)
+{
+    for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
+        struct render_client *client = &thread->clients[slot];
+        if (!client->client_id)
+            continue;
+        client->view = renderer_view_create(thread->renderer);
+        if (!client->view)
+            return false;
+        render_mark_moving(thread, client);
+        render_notice(thread, client->client_id, "error",
+                      "the graphics driver was reset; pictures start anew");
+    }
+    return true;
+}
+
 void render_remove_gone_clients(struct render_thread *thread, bool all)
 {
     for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
@@ -55,7 +83,8 @@ void render_remove_gone_clients(struct render_thread *thread, bool all)
         if (client->drawing)
             frame_stream_finish(thread->params.stream, slot, NULL);
         accuracy_service_forget(thread->params.accuracy, client->client_id);
-        renderer_view_destroy(thread->renderer, &client->view);
+        if (client->view)
+            renderer_view_destroy(thread->renderer, &client->view);
         edit_history_clear(&client->history);
         memset(client, 0, sizeof(*client));
     }

@@ -11,6 +11,7 @@
 #include "server/network.h"
 #include "server/options.h"
 #include "server/render_thread.h"
+#include "voxcast_paths.h"
 
 extern char **environ;
 

@@ -389,8 +389,14 @@ static bool make_room_for_faces(struct voxel_volume *volume)
     return volume->faces && volume->free_list;
 }
 
-bool voxel_volume_update(struct voxel_volume *volume, const struct resident *resident,
-                         const float eye[3])
+// After memory has ended: what is there in part goes, so that the next frame starts anew.
+static void give_up_storage(struct voxel_volume *volume)
+{
+    destroy_storage(volume);
+    volume->laid_out = false;
+}
+
+static bool update(struct voxel_volume *volume, const struct resident *resident, const float eye[3])
 {
     const struct scene_revisions *now = &resident->scene->revisions;
     bool geometry = !volume->laid_out || now->geometry != volume->geometry_seen;
@@ -420,6 +426,15 @@ bool voxel_volume_update(struct voxel_volume *volume, const struct resident *res
     return voxel_volume_prepare_work(volume, resident);
 }
 
+bool voxel_volume_update(struct voxel_volume *volume, const struct resident *resident,
+                         const float eye[3])
+{
+    bool done = update(volume, resident, eye);
+    if (!done)
+        give_up_storage(volume);
+    return done;
+}
+
 static void grow_if_full(uint32_t *capacity, uint32_t used)
 {
     if (used >= *capacity)
@@ -443,7 +458,10 @@ enum voxel_room voxel_volume_check_room(struct voxel_volume *volume)
     if (counters[COUNTER_OVERFLOW] & OVERFLOW_FACES && volume->face_growth < 2)
         volume->face_growth++;
     volume->everything = true;
-    return create_pools(volume) ? VOXEL_ROOM_GROWN : VOXEL_ROOM_NONE;
+    if (create_pools(volume))
+        return VOXEL_ROOM_GROWN;
+    give_up_storage(volume);
+    return VOXEL_ROOM_NONE;
 }
 
 static void fill_levels(const struct voxel_volume *volume, struct voxel_block *block)

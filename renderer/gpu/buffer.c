@@ -27,7 +27,7 @@ struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gp
             GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT | GL_CLIENT_STORAGE_BIT;
     bool whole = data && size_bytes == buffer->size_bytes;
     glNamedBufferStorage(buffer->name, (GLsizeiptr)buffer->size_bytes, whole ? data : NULL, flags);
-    if (gpu_take_out_of_memory())
+    if (gpu_take_out_of_memory(gpu))
         goto fail;
     glObjectLabel(GL_BUFFER, buffer->name, -1, label);
     if (!whole)

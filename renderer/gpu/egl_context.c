@@ -60,7 +60,9 @@ static bool display_open_context(struct gpu *gpu, EGLDisplay display)
         return false;
     static const EGLint config_attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
                                                EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
-    static const EGLint context_attributes[] = {
+    // Where the driver can, it tells of a lost context rather than ends the program.
+    bool robust = epoxy_has_egl_extension(display, "EGL_EXT_create_context_robustness");
+    const EGLint context_attributes[] = {
         EGL_CONTEXT_MAJOR_VERSION,
         4,
         EGL_CONTEXT_MINOR_VERSION,
@@ -69,6 +71,8 @@ static bool display_open_context(struct gpu *gpu, EGLDisplay display)
         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
         EGL_CONTEXT_OPENGL_DEBUG,
         EGL_TRUE,
+        robust ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+        EGL_LOSE_CONTEXT_ON_RESET,
         EGL_NONE,
     };
     EGLConfig config = EGL_NO_CONFIG_KHR;

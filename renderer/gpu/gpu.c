@@ -159,9 +159,31 @@ uint64_t gpu_memory_bytes(const struct gpu *gpu, const char *prefix)
     return bytes;
 }
 
-bool gpu_take_out_of_memory(void)
+void gpu_inject_fault(struct gpu *gpu, enum renderer_fault fault, uint64_t number)
 {
-    bool out_of_memory = false;
+    gpu->faults[fault] = number;
+}
+
+uint64_t gpu_fault_left(const struct gpu *gpu, enum renderer_fault fault)
+{
+    return gpu->faults[fault];
+}
+
+bool gpu_fault_strikes(struct gpu *gpu, enum renderer_fault fault)
+{
+    return gpu->faults[fault] > 0 && --gpu->faults[fault] == 0;
+}
+
+bool gpu_is_lost(struct gpu *gpu)
+{
+    gpu->lost = gpu->lost || glGetGraphicsResetStatus() != GL_NO_ERROR ||
+                gpu_fault_strikes(gpu, RENDERER_FAULT_CONTEXT);
+    return gpu->lost;
+}
+
+bool gpu_take_out_of_memory(struct gpu *gpu)
+{
+    bool out_of_memory = gpu_fault_strikes(gpu, RENDERER_FAULT_ALLOCATION);
     for (GLenum error; (error = glGetError()) != GL_NO_ERROR;)
         out_of_memory = out_of_memory || error == GL_OUT_OF_MEMORY;
     return out_of_memory;

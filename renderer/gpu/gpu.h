@@ -23,6 +23,14 @@ void gpu_destroy(struct gpu **gpu);
 const struct renderer_info *gpu_get_info(const struct gpu *gpu);
 const char *gpu_get_shader_dir(const struct gpu *gpu);
 
+// What renderer_inject_fault() makes happen.
+void gpu_inject_fault(struct gpu *gpu, enum renderer_fault fault, uint64_t number);
+uint64_t gpu_fault_left(const struct gpu *gpu, enum renderer_fault fault);
+
+// Whether the driver has lost the context, and with it all that was in it: nothing can be drawn any
+// more. Asks the driver.
+bool gpu_is_lost(struct gpu *gpu);
+
 // Errors reported by the debug callback so far.
 uint64_t gpu_error_count(const struct gpu *gpu);
 

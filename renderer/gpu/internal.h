@@ -30,15 +30,21 @@ struct gpu {
     uint32_t current_program;
     void (*give_way)(void *user); // NULL for none
     void *give_way_user;
-    double waited_ms; // in it, so far
+    double waited_ms;                      // in it, so far
+    uint64_t faults[RENDERER_FAULT_COUNT]; // events until the one that fails; 0: none does
+    bool lost;
 };
 
 void gpu_account(struct gpu *gpu, struct gpu_allocation *allocation, const char *label,
                  uint64_t bytes);
 void gpu_unaccount(struct gpu_allocation *allocation);
 
-// True and cleared if GL ran out of memory in the calls since the last check.
-bool gpu_take_out_of_memory(void);
+// Counts an event of a kind; whether it is the one that is to fail.
+bool gpu_fault_strikes(struct gpu *gpu, enum renderer_fault fault);
+
+// True and cleared if GL ran out of memory in the calls since the last check, which made one buffer
+// or texture.
+bool gpu_take_out_of_memory(struct gpu *gpu);
 
 // EGL half of gpu_create(), in egl_context.c.
 bool gpu_egl_open(struct gpu *gpu, const char *choice, struct error *out_error);

@@ -94,6 +94,10 @@ static GLuint build_stage(struct gpu *gpu, struct gpu_program *program, GLenum s
 static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *out_error)
 {
     program->file_count = 0;
+    if (gpu_fault_strikes(gpu, RENDERER_FAULT_PROGRAM)) {
+        error_set(out_error, "shader \"%s\" does not compile: it was told not to", program->path);
+        return 0;
+    }
     size_t length = strlen(program->path);
     bool compute = length > 5 && strcmp(program->path + length - 5, ".comp") == 0;
     GLuint shaders[2] = {0, 0};

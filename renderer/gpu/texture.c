@@ -76,7 +76,7 @@ struct gpu_texture *gpu_texture_create(struct gpu *gpu, const struct gpu_texture
     else
         glTextureStorage2D(texture->name, levels, internal, (GLsizei)params->width,
                            (GLsizei)params->height);
-    if (gpu_take_out_of_memory()) {
+    if (gpu_take_out_of_memory(gpu)) {
         gpu_texture_destroy(&texture);
         return NULL;
     }

@@ -290,31 +290,40 @@ uint32_t scene_add_node(struct scene *scene, const char *name, uint32_t parent)
     return scene->node_count++;
 }
 
-// A removed root node that nothing refers to, or a new one.
-static uint32_t take_root_node(struct scene *scene, const char *name)
+// The root node of a removed light that is to be used again, or a new one.
+static uint32_t take_root_node(struct scene *scene, uint32_t light, const char *name)
 {
-    for (uint32_t i = 0; i < scene->node_count; i++) {
-        struct scene_node *node = &scene->nodes[i];
-        if (!node->removed || node->parent != SCENE_NONE)
-            continue;
-        node->removed = false;
-        node->visible = true;
-        copy_name(node->name, sizeof(node->name), name);
-        scene->revisions.geometry++;
-        return i;
-    }
-    return scene_add_node(scene, name, SCENE_NONE);
+    uint32_t id = light < scene->light_count ? scene->lights[light].node : SCENE_NONE;
+    if (id == SCENE_NONE || !scene->nodes[id].removed || scene->nodes[id].parent != SCENE_NONE)
+        return scene_add_node(scene, name, SCENE_NONE);
+    struct scene_node *node = &scene->nodes[id];
+    node->removed = false;
+    node->visible = true;
+    copy_name(node->name, sizeof(node->name), name);
+    scene->revisions.geometry++;
+    return id;
+}
+
+// A place in the list of lights: a new one, or that of a removed light once there are many.
+static uint32_t find_light_place(const struct scene *scene)
+{
+    uint32_t removed = 0, first = scene->light_count;
+    for (uint32_t i = scene->light_count; i-- > 0;)
+        if (scene->lights[i].removed) {
+            removed++;
+            first = i;
+        }
+    bool is_full = scene->light_count == SCENE_MAX_LIGHTS;
+    return removed > SCENE_KEPT_LIGHTS || (is_full && removed > 0) ? first : scene->light_count;
 }
 
 uint32_t scene_add_light(struct scene *scene, const struct scene_light *light,
                          const float position[3], const float direction[3])
 {
-    uint32_t id = 0;
-    while (id < scene->light_count && !scene->lights[id].removed)
-        id++;
+    uint32_t id = find_light_place(scene);
     if (id == scene->light_count && !GROW(scene, lights, light, 1, SCENE_MAX_LIGHTS))
         return SCENE_NONE;
-    uint32_t node = take_root_node(scene, light->name);
+    uint32_t node = take_root_node(scene, id, light->name);
     if (node == SCENE_NONE)
         return SCENE_NONE;
     if (id == scene->light_count)

@@ -33,6 +33,9 @@
 #define SCENE_MAX_FILE_BYTES       (1024ull << 20)
 #define SCENE_MAX_WARNINGS         64u
 
+// So many removed lights keep their places, so that they can come back under their ids.
+#define SCENE_KEPT_LIGHTS 256u
+
 enum scene_wrap { SCENE_WRAP_REPEAT, SCENE_WRAP_CLAMP_TO_EDGE, SCENE_WRAP_MIRRORED_REPEAT };
 
 enum scene_alpha_mode { SCENE_ALPHA_OPAQUE, SCENE_ALPHA_MASK, SCENE_ALPHA_BLEND };
@@ -312,6 +315,10 @@ void scene_set_light_placement(struct scene *scene, uint32_t light, const float 
 void scene_get_light_placement(const struct scene *scene, uint32_t light, float out_position[3],
                                float out_direction[3]);
 void scene_remove_light(struct scene *scene, uint32_t light);
+
+// Brings a removed light back under its id. If another has been in its place meanwhile, it has the
+// other's values. False if it is not removed.
+bool scene_restore_light(struct scene *scene, uint32_t light);
 
 // Takes ownership of environment->pixels.
 void scene_set_environment(struct scene *scene, const struct scene_environment *environment);

@@ -96,6 +96,21 @@ void scene_remove_light(struct scene *scene, uint32_t light_id)
     scene_update_world_transforms(scene);
 }
 
+bool scene_restore_light(struct scene *scene, uint32_t light_id)
+{
+    assert(light_id < scene->light_count);
+    struct scene_light *light = &scene->lights[light_id];
+    if (!light->removed)
+        return false;
+    light->removed = false;
+    scene->nodes[light->node].light = light_id;
+    scene->nodes[light->node].removed = false;
+    scene->revisions.lights++;
+    scene->revisions.geometry++;
+    scene_update_world_transforms(scene);
+    return true;
+}
+
 void scene_set_environment(struct scene *scene, const struct scene_environment *environment)
 {
     if (scene->environment.pixels != environment->pixels)

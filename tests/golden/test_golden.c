@@ -16,6 +16,7 @@
 
 #include "renderer/renderer.h"
 #include "renderer/scene/image_decode.h"
+#include "voxcast_paths.h"
 
 #define WIDTH             192u
 #define HEIGHT            108u

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "support_gpu.h"
+#include "voxcast_paths.h"
 
 #define BOUND_M 30.0f
 #define SPECK_M 0.001f

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "support_gpu.h"
+#include "voxcast_paths.h"
 
 static void draw_and_drop(struct renderer *renderer, struct view *view,
                           const struct frame_params *params)

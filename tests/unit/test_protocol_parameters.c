@@ -13,6 +13,7 @@
 
 #include "protocol/parameter_value.h"
 #include "renderer/renderer.h"
+#include "voxcast_paths.h"
 
 static char *read_document(void)
 {

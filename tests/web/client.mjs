@@ -5,13 +5,15 @@ import { createRequire } from 'node:module';
 const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
 const WebSocket = require('ws');
 
-/** Starts voxcastd on a free port. VOXCASTD names the program. */
-export async function startDaemon(args = []) {
+/**
+ * Starts voxcastd on a free port. VOXCASTD names the program. `env` is added to its environment;
+ * `before` is what a shell does before it becomes the program, such as setting limits.
+ */
+export async function startDaemon(args = [], { env = {}, before = ':' } = {}) {
   const program = process.env.VOXCASTD;
   if (!program) throw new Error('VOXCASTD must name the program to test');
-  const child = spawn(program, ['--port', '0', '--log-level', 'warn', ...args], {
-    stdio: ['ignore', 'pipe', 'pipe'],
-  });
+  const start = ['-c', `${before}; exec "$0" "$@"`, program, '--port', '0', '--log-level', 'warn', ...args];
+  const child = spawn('/bin/sh', start, { stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ...env } });
   const daemon = { child, log: '', exit: new Promise((done) => child.on('exit', done)) };
   child.stderr.on('data', (data) => (daemon.log += data));
   const line = await new Promise((resolve, reject) => {
