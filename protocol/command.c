@@ -28,6 +28,7 @@ enum field_bit {
     FLAT = 1 << 15, // parameters beside the fields
     LADDER = 1 << 16,
     NOISE = 1 << 17,
+    SECONDS = 1 << 18,
 };
 
 struct field {
@@ -58,6 +59,7 @@ static const struct field fields[] = {
     {"y", PIXEL_Y, FIELD_NUMBER, 0, 2160},
     {"ladder", LADDER, FIELD_CHOICE, 0, 0, command_ladder_names},
     {"noise", NOISE, FIELD_NUMBER, 0.0005, 0.1},
+    {"seconds", SECONDS, FIELD_NUMBER, 1, 86400},
 };
 
 struct method_row {
@@ -96,7 +98,7 @@ static const struct method_row methods[METHOD_COUNT] = {
     [METHOD_EDIT_REDO] = {"edit.redo", METHOD_EDITS, GROUP_COUNT, EDIT_ID, 0},
     [METHOD_PICK] = {"pick", 0, GROUP_COUNT, PIXEL_X | PIXEL_Y, PIXEL_X | PIXEL_Y},
     [METHOD_FRAME_ACK] = {"frame.ack", 0, GROUP_COUNT, FRAME_ID, FRAME_ID},
-    [METHOD_ACCURACY_START] = {"accuracy.start", 0, GROUP_COUNT, LADDER | NOISE, 0},
+    [METHOD_ACCURACY_START] = {"accuracy.start", 0, GROUP_COUNT, LADDER | NOISE | SECONDS, 0},
     [METHOD_ACCURACY_CANCEL] = {"accuracy.cancel", 0, GROUP_COUNT, 0, 0},
 };
 
@@ -222,6 +224,9 @@ static void store_field(const struct field *field, const cJSON *item, struct com
     case NOISE:
         command->noise = number;
         break;
+    case SECONDS:
+        command->seconds = number;
+        break;
     case PROTOCOL:
     case SET:
     case FLAT:
@@ -310,6 +315,7 @@ bool command_parse(const struct rpc_request *request, struct command *out_comman
     out_command->id = request->id;
     out_command->target = COMMAND_NO_TARGET;
     out_command->noise = COMMAND_DEFAULT_NOISE;
+    out_command->seconds = COMMAND_DEFAULT_SECONDS;
     uint32_t method = 0;
     while (method < METHOD_COUNT && strcmp(methods[method].name, request->method) != 0)
         method++;

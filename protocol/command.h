@@ -45,10 +45,11 @@ enum command_ladder { LADDER_QUICK, LADDER_FULL, LADDER_COUNT };
 
 extern const char *const command_ladder_names[LADDER_COUNT + 1]; // ended by NULL
 
-#define COMMAND_DEFAULT_NOISE  0.01
-#define COMMAND_MAX_VALUES     24u
-#define COMMAND_MAX_SUPERSEDED 32u
-#define COMMAND_NO_TARGET      UINT32_MAX
+#define COMMAND_DEFAULT_NOISE   0.01
+#define COMMAND_DEFAULT_SECONDS 120.0
+#define COMMAND_MAX_VALUES      24u
+#define COMMAND_MAX_SUPERSEDED  32u
+#define COMMAND_NO_TARGET       UINT32_MAX
 
 struct command {
     enum method method;
@@ -65,7 +66,7 @@ struct command {
     uint64_t resume_epoch, resume_revision;
     double x, y;                // of pick
     enum command_ladder ladder; // of accuracy.start
-    double noise;               // likewise
+    double noise, seconds;      // likewise
     char name[PROTOCOL_MAX_NAME_BYTES + 1];
     char token[PROTOCOL_MAX_TOKEN_BYTES + 1];
     char source[PROTOCOL_MAX_SOURCE_BYTES + 1];

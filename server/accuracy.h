@@ -87,6 +87,7 @@ struct truth_params {
     const char *path, *direct_path; // files; NULL to trace
     uint32_t samples;               // a pixel, if until_noise is 0
     double until_noise;             // trace until the noise is no more than this
+    double most_s;                  // or for so long; 0: however long that takes
     const char *folder;             // where a traced picture is kept, and found again, or NULL
     const struct cJSON *identity;   // says what scene and view is traced
     bool low_priority;              // gives way to all others

@@ -172,6 +172,7 @@ static bool measure(struct accuracy_service *service, struct accuracy_session *s
     cJSON_AddNumberToObject(identity, "revision", (double)session->revision);
     struct truth_params truth = {.shot = &accuracy.shot,
                                  .until_noise = session->until_noise,
+                                 .most_s = session->most_s,
                                  .identity = identity,
                                  .low_priority = true,
                                  .watch = watch};

@@ -41,7 +41,7 @@ struct accuracy_request {
     uint64_t revision;          // of the document
     struct frame_params params; // the client's view: camera, size, quality and settings
     const char *ladder;         // "quick" or "full"
-    double until_noise;         // of the reference
+    double until_noise, most_s; // of the reference: see struct truth_params
 };
 
 struct accuracy_ticket {

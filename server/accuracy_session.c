@@ -73,6 +73,7 @@ struct accuracy_session *accuracy_session_create(const struct accuracy_request *
     session->revision = request->revision;
     session->params = request->params;
     session->until_noise = request->until_noise;
+    session->most_s = request->most_s;
     session->noise = NAN;
     snprintf(session->source, sizeof(session->source), "%s", request->source);
     choose_size(&session->params);

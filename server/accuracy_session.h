@@ -25,7 +25,7 @@ struct accuracy_session {
     uint64_t revision;
     struct ladder ladder;       // the live rung first
     struct frame_params params; // of the measured size
-    double until_noise;
+    double until_noise, most_s;
     char folder[4096];
     struct scene *scene; // owned; the measuring thread's from the start on
 

@@ -23,6 +23,7 @@ static char *describe(const struct truth_params *params)
     cJSON_AddItemToObject(json, "scene", cJSON_Duplicate(params->identity, true));
     cJSON_AddNumberToObject(json, "samples", params->samples);
     cJSON_AddNumberToObject(json, "until_noise", params->until_noise);
+    cJSON_AddNumberToObject(json, "most_s", params->most_s);
     cJSON_AddNumberToObject(json, "seed", FIRST_SEED);
     char *text = cJSON_PrintUnformatted(json);
     cJSON_Delete(json);
@@ -143,15 +144,28 @@ static bool until_noise(const struct truth_params *params)
     return params->until_noise > 0.0;
 }
 
+static double elapsed_s(const struct trace_state *state)
+{
+    return 1e-3 * (clock_now_ms() - state->started_ms);
+}
+
 // Noise falls with the square root of the samples.
 static double seconds_left(const struct trace_state *state, uint32_t wanted)
 {
-    double elapsed_s = 1e-3 * (clock_now_ms() - state->started_ms);
+    double most_s = state->params->most_s, left_s = NAN;
     double ratio = state->noise / state->params->until_noise;
-    if (!until_noise(state->params))
-        return state->samples > 0 ? elapsed_s * (double)(wanted - state->samples) / state->samples
-                                  : NAN;
-    return isfinite(state->noise) ? elapsed_s * fmax(ratio * ratio - 1.0, 0.0) : NAN;
+    if (until_noise(state->params) && isfinite(state->noise))
+        left_s = elapsed_s(state) * fmax(ratio * ratio - 1.0, 0.0);
+    if (!until_noise(state->params) && state->samples > 0)
+        left_s = elapsed_s(state) * (double)(wanted - state->samples) / state->samples;
+    return most_s > 0.0 ? fmin(left_s, fmax(most_s - elapsed_s(state), 0.0)) : left_s;
+}
+
+static bool is_enough(const struct trace_state *state, uint32_t wanted)
+{
+    double most_s = state->params->most_s;
+    return state->samples >= wanted || state->noise <= state->params->until_noise ||
+           (most_s > 0.0 && state->samples > 0 && elapsed_s(state) >= most_s);
 }
 
 static bool tell(const struct trace_state *state, enum accuracy_stage stage, double left_s)
@@ -180,14 +194,15 @@ static bool add_samples(struct trace_state *state, struct reference *half, uint3
     return true;
 }
 
-// Traces until there are enough samples, or the noise is low enough. False if the watch ends it.
+// Traces until there are enough samples, the noise is low enough, or time is up. False if the watch
+// ends it.
 static bool trace(const struct truth_params *params, const struct halves *halves, double *out_noise)
 {
     uint32_t wanted = until_noise(params) ? MOST_SAMPLES : params->samples;
     struct trace_state state = {
         .params = params, .halves = halves, .started_ms = clock_now_ms(), .noise = INFINITY};
     double told_ms = state.started_ms;
-    while (state.samples < wanted && !(state.noise <= params->until_noise)) {
+    while (!is_enough(&state, wanted)) {
         uint32_t missing = (wanted - state.samples + 1) / 2;
         uint32_t count = missing < SAMPLES_AT_ONCE ? missing : SAMPLES_AT_ONCE;
         for (int i = 0; i < 2; i++)

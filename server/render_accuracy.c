@@ -23,6 +23,7 @@ static bool prepare(struct render_thread *thread, const struct render_client *cl
                    .settings = render_resolve_settings(thread)},
         .ladder = command_ladder_names[command->ladder],
         .until_noise = command->noise,
+        .most_s = command->seconds,
     };
     if (!request.scene)
         return error_set(out_error, "out of memory for a copy of the scene");

@@ -141,6 +141,8 @@ static void requests_fail_with_the_stated_code(void **state)
         {REQUEST("accuracy.start", "{\"noise\":0.2}"), RPC_INVALID_PARAMS, "noise"},
         {REQUEST("accuracy.start", "{\"noise\":0.0004}"), RPC_INVALID_PARAMS, "noise"},
         {REQUEST("accuracy.start", "{\"noise\":\"0.01\"}"), RPC_INVALID_PARAMS, "noise"},
+        {REQUEST("accuracy.start", "{\"seconds\":0}"), RPC_INVALID_PARAMS, "seconds"},
+        {REQUEST("accuracy.start", "{\"seconds\":86401}"), RPC_INVALID_PARAMS, "seconds"},
         {REQUEST("accuracy.start", "{\"rung\":\"draft\"}"), RPC_INVALID_PARAMS, "rung"},
         {REQUEST("accuracy.cancel", "{\"ladder\":\"quick\"}"), RPC_INVALID_PARAMS, "ladder"},
     };
@@ -178,12 +180,13 @@ static void requests_become_commands(void **state)
     assert_true(command->revision == 9);
     assert_int_equal(parse(REQUEST("accuracy.start", "{}"), command, &error), 0);
     assert_int_equal(command->ladder, LADDER_QUICK);
-    assert_true(command->noise == 0.01);
+    assert_true(command->noise == 0.01 && command->seconds == 120.0);
     assert_int_equal(
-        parse(REQUEST("accuracy.start", "{\"ladder\":\"full\",\"noise\":0.0005}"), command, &error),
+        parse(REQUEST("accuracy.start", "{\"ladder\":\"full\",\"noise\":0.0005,\"seconds\":1}"),
+              command, &error),
         0);
     assert_int_equal(command->ladder, LADDER_FULL);
-    assert_true(command->noise == 0.0005);
+    assert_true(command->noise == 0.0005 && command->seconds == 1.0);
     assert_int_equal(method_get_flags(METHOD_ACCURACY_START), 0);
     free(command);
 }

@@ -141,9 +141,10 @@ describe('the tab of accuracy', () => {
     const noise = panel().locator('.lil-controller', { hasText: 'Noise' }).locator('input');
     await noise.fill('0.5');
     await noise.press('Enter');
+    await panel().locator('.lil-controller', { hasText: 'At most for' }).locator('select').selectOption({ label: '5 min' });
     await button('Measure this view').click();
     await untilText(/Waits until another measurement has ended/);
-    assert.deepEqual(await calls(), [{ method: 'accuracy.start', params: { ladder: 'full', noise: 0.005 } }]);
+    assert.deepEqual(await calls(), [{ method: 'accuracy.start', params: { ladder: 'full', noise: 0.005, seconds: 300 } }]);
     await tell({ state: 'reference', samples: 64, noise: null, seconds_left: null });
     assert.match(await text(), /64 samples a pixel, noise not known yet \(wanted: 1 %\)\./);
     assert.equal(await panel().locator('progress').getAttribute('value'), null);

@@ -88,7 +88,7 @@ function makeMeasurement() {
 const settle = () => new Promise((done) => setTimeout(done, 5));
 
 async function begin({ server, measurement }, id = 'a1', revision = 40) {
-  const started = measurement.start({ ladder: 'quick', noise: 0.01 });
+  const started = measurement.start({ ladder: 'quick', noise: 0.01, seconds: 60 });
   server.reply({ measurement: id, rung_count: 6, width: 64, height: 36, epoch: 1, revision });
   await started;
   await settle();
@@ -114,7 +114,7 @@ test('results are read after each rung, and only those of the newest measurement
 
 test('progress that comes before the reply counts', async () => {
   const { server, measurement } = makeMeasurement();
-  const started = measurement.start({ ladder: 'quick', noise: 0.01 });
+  const started = measurement.start({ ladder: 'quick', noise: 0.01, seconds: 60 });
   measurement.takeProgress({ measurement: 'c3', state: 'failed', message: 'no memory' });
   server.reply({ measurement: 'c3', rung_count: 6 });
   await started;

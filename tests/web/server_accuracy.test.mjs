@@ -99,6 +99,7 @@ describe('accuracy', () => {
     };
     await refused('accuracy.start', { ladder: 'steep' }, 'ladder', /quick, full/);
     await refused('accuracy.start', { noise: 0.5 }, 'noise', /0\.0005 to 0\.1/);
+    await refused('accuracy.start', { seconds: 0.5 }, 'seconds', /1 to 86400/);
     await refused('accuracy.start', { noise: 'low' }, 'noise', /number/);
     await refused('accuracy.start', { rungs: 3 }, 'rungs', /no parameter/);
     await refused('view.configure', { rung: 'draft' }, 'rung', /nothing has been measured/);
@@ -207,6 +208,10 @@ describe('accuracy', () => {
     const results = await (await get(daemon, measured.measurement, 'results.json')).json();
     assert.equal(results.rungs.length, end.done, 'what has been measured stays');
     assert.ok(results.rungs.every(({ edit }) => !edit.error), 'no rung is there in part');
+    // Where noise does not fall in time, the truth is what there is.
+    const hasty = await start(client, { noise: 0.0005, seconds: 1 });
+    const noisy = await heard(client, hasty.measurement, inState('rungs'), 'rungs after a second');
+    assert.ok(noisy.noise > 0.0005, `noise ${noisy.noise}`);
     // Many at once are one in the end.
     const replies = await Promise.all(Array.from({ length: 40 }, () => client.call('accuracy.start', {})));
     assert.equal(new Set(replies.map(({ result }) => result.measurement)).size, 40);

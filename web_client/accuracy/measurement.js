@@ -66,7 +66,7 @@ export class Measurement extends EventTarget {
 
   /**
    * Measures this client's view as it is now, in place of what was measured before.
-   * @param {{ladder: string, noise: number}} params noise: standard error over mean luminance
+   * @param {{ladder: string, noise: number, seconds: number}} params noise: standard error over mean luminance
    */
   async start(params) {
     const { measurement, rung_count, revision } = await this.connection.call('accuracy.start', params);

@@ -4,6 +4,8 @@ import { makeSection } from './sections.js';
 
 /** The server's range of the wanted noise, in percent. */
 const NOISE = { least: 0.05, most: 10, step: 0.05 };
+/** What it may take, in seconds. */
+const TIMES = { '20 s': 20, '1 min': 60, '2 min': 120, '5 min': 300, '20 min': 1200, '1 h': 3600 };
 const LADDERS = { 'Quick: the presets': 'quick', 'Full: each setting': 'full' };
 
 /** The form that measures the view, and how far that is. */
@@ -11,12 +13,14 @@ export class AccuracyMeasure {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
     this.app = app;
-    this.choice = { ladder: 'quick', noise: 1 };
+    this.choice = { ladder: 'quick', noise: 1, seconds: 120 };
     const gui = makeSection(root, 'Measurement');
     const ladder = gui.add(this.choice, 'ladder', LADDERS).name('Settings');
     ladder.domElement.title = 'Which settings are measured: a few presets, or all that differ in one thing.';
     const noise = gui.add(this.choice, 'noise', NOISE.least, NOISE.most, NOISE.step).name('Noise of the truth (%)');
     noise.domElement.title = 'The truth is traced until its pixels err by no more than this. Less takes longer: half the noise, four times the time.';
+    const seconds = gui.add(this.choice, 'seconds', TIMES).name('At most for');
+    seconds.domElement.title = 'Light through glass may take hours to be rid of noise. The chart tells what noise is left.';
     this.begin = element('button', { type: 'button', onclick: () => this.#start() }, 'Measure this view');
     this.stop = element('button', { type: 'button', onclick: () => this.#cancel() }, 'Cancel');
     this.text = element('p', { class: 'hint' });
@@ -49,11 +53,11 @@ export class AccuracyMeasure {
 
   async #start() {
     this.begin.disabled = true;
-    const { ladder, noise } = this.choice;
+    const { ladder, noise, seconds } = this.choice;
     try {
       // The picture must not follow what is measured no longer.
       if (this.app.view.rung) await this.app.view.chooseRung('');
-      await this.app.measurement.start({ ladder, noise: Number((noise / 100).toPrecision(6)) });
+      await this.app.measurement.start({ ladder, noise: Number((noise / 100).toPrecision(6)), seconds });
     } catch (error) {
       this.app.toasts.showError(/** @type {any} */ (error));
     }
