@@ -81,7 +81,7 @@ a family at a time. After every frame a compute shader looks for infinities and 
 G-buffer, radiance, what pixels have gathered, voxel radiance, the irradiance cache, shadow views, lamps, instances,
 materials, vertices, the environment's harmonics and levels. One of them fails the case, whatever was measured.
 
-Measured by ${results.gl_renderer.replace(/ \(.*/, '')} in ${results.seconds} s: ${runs.length} runs, ${count('holds')} within their
+Measured by ${results.gl_renderer.replace(/ \(.*/, '')}: ${runs.length} runs, ${count('holds')} within their
 bound, ${count('known')} known to miss it (and held to what stands beside it), ${count('fails')} beyond.
 
 A value of 0 is exact: the same bits. "Of the brightest" is the greatest difference of any channel of any pixel over the
