@@ -243,7 +243,12 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     if (!view_prepare(view, frame))
         return error_set(out_error, "a view of %u x %u pixels does not fit into GPU memory",
                          frame->params->width, frame->params->height);
-    frame->visibility_changed = frame->visibility_changed || view->width != width_before;
+    if (view->width != width_before) {
+        frame->visibility_changed = true;
+        frame->unchanged = false;
+    }
+    if (!gi_plan_gathering(frame, out_error))
+        return false;
     frame->width = view->width;
     frame->height = view->height;
     frame->tiles_x = (view->width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;

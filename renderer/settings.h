@@ -157,6 +157,8 @@ struct quality_level {
     enum cone_set cone_set;
     float cone_step;
     enum gather_mode gather_mode;
+    uint32_t ray_step;     // where rays gather: every how many-th rendered pixel has them,
+    uint32_t ray_pictures; // and how many pictures of one ray each are averaged
     bool soft_shadows;
     float specular_roughness;   // rougher surfaces reflect as if by the cached irradiance
     float specular_reflectance; // and so do those that reflect less than this head-on

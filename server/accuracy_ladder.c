@@ -38,18 +38,25 @@ static void add_presets(struct ladder *ladder)
         add_rung(ladder, quality_names[i], (enum quality)i);
 }
 
-// A variation of one setting, on the row that the method's other variations start from.
-static struct rung *add_variation(struct ladder *ladder, const char *method, const char *key,
-                                  const char *value)
+// What variations of one setting start from: rays would hide what cones and voxels do.
+static struct rung *add_base(struct ladder *ladder, const char *name, const char *method)
 {
-    char name[RUNG_NAME_SIZE];
-    snprintf(name, sizeof(name), "%s-%s-%s", method, key, value);
     struct rung *rung = add_rung(ladder, name, QUALITY_HIGH);
     if (rung) {
         add_set(rung, "gi_method", method);
-        add_set(rung, key, value);
+        add_set(rung, "gather_mode", gather_mode_names[GATHER_CACHE]);
     }
     return rung;
+}
+
+static void add_variation(struct ladder *ladder, const char *method, const char *key,
+                          const char *value)
+{
+    char name[RUNG_NAME_SIZE];
+    snprintf(name, sizeof(name), "%s-%s-%s", method, key, value);
+    struct rung *rung = add_base(ladder, name, method);
+    if (rung)
+        add_set(rung, key, value);
 }
 
 // Voxels and where cones start decide time and error most, so they are crossed.
@@ -96,11 +103,9 @@ static void add_varied(struct ladder *ladder, enum gi_method method)
     for (size_t i = 0; i < 2; i++) {
         char rung_name[RUNG_NAME_SIZE];
         snprintf(rung_name, sizeof(rung_name), "%s-scale-%g", name, scales[i]);
-        struct rung *rung = add_rung(ladder, rung_name, QUALITY_HIGH);
-        if (rung) {
-            add_set(rung, "gi_method", name);
+        struct rung *rung = add_base(ladder, rung_name, name);
+        if (rung)
             rung->scale = scales[i];
-        }
     }
 }
 

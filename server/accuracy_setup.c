@@ -92,7 +92,7 @@ static void add_float(cJSON *object, const char *name, float value)
     cJSON_AddNumberToObject(object, name, strtod(text, NULL));
 }
 
-static_assert(sizeof(struct quality_level) == 11 * sizeof(uint32_t),
+static_assert(sizeof(struct quality_level) == 13 * sizeof(uint32_t),
               "a field that is new belongs into accuracy_quality_table(), too");
 
 cJSON *accuracy_quality_table(void)
@@ -110,6 +110,8 @@ cJSON *accuracy_quality_table(void)
         cJSON_AddStringToObject(row, "cone_set", cone_set_names[level->cone_set]);
         add_float(row, "cone_step", level->cone_step);
         cJSON_AddStringToObject(row, "gather_mode", gather_mode_names[level->gather_mode]);
+        cJSON_AddNumberToObject(row, "ray_step", level->ray_step);
+        cJSON_AddNumberToObject(row, "ray_pictures", level->ray_pictures);
         cJSON_AddBoolToObject(row, "soft_shadows", level->soft_shadows);
         add_float(row, "specular_roughness", level->specular_roughness);
         add_float(row, "specular_reflectance", level->specular_reflectance);

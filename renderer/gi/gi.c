@@ -17,8 +17,11 @@
 #define OCCLUSION_SHARE 0.05f
 // Pictures of a camera at rest that are averaged where pixels gather.
 #define CONE_PICTURES 4u
-// The same of rays, one each.
-#define RAY_PICTURES 64u
+// Fewer rays a pixel are noisier than the cache, which is shown instead.
+#define SHOWN_RAYS 16u
+// Above every roughness.
+#define ALL_ROUGHNESS 1.01f
+// Frames in a row that show nothing new while light settles.
 #define QUIET_FRAMES 7u
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
@@ -303,9 +306,7 @@ enum gather_mode gi_gather_mode(const struct frame *frame)
 uint32_t gi_gather_step(const struct frame *frame)
 {
     enum gather_mode mode = gi_gather_mode(frame);
-    // Rays start once a shown pixel, since many of them are averaged.
-    bool supersampled = frame->quality->resolution_scale > 1.0f;
-    return mode == GATHER_HALF || (mode == GATHER_RAYS && supersampled) ? 2 : 1;
+    return mode == GATHER_HALF ? 2 : mode == GATHER_RAYS ? frame->quality->ray_step : 1;
 }
 
 // While light settles for pictures that are dear to draw, a few frames only do that.
@@ -319,40 +320,34 @@ static void settle_quietly(struct frame *frame, const struct voxel_volume *volum
     view->shown_light = volume->light.version;
 }
 
-// Pixels gather once the light has settled; until then they show the cache. While nothing moves
-// their pictures are averaged.
-static void plan_gathering(struct frame *frame, struct voxel_volume *volume)
+static void show_cache(struct frame *frame)
+{
+    frame->gather = GATHER_CACHE;
+    frame->still_count = 0;
+    frame->view->still_count = 0;
+}
+
+// Whether the picture of before stays until rays are enough. Where bounces are counted the cache
+// holds one less than is shown and cannot stand in for rays.
+static bool waits_for_rays(const struct frame *frame, uint32_t count)
+{
+    uint32_t enough = frame->still_frames < SHOWN_RAYS ? frame->still_frames : SHOWN_RAYS;
+    return frame->gather == GATHER_RAYS && count < enough && frame->params->settings.bounces == 0;
+}
+
+// One more picture of what pixels gather, or those of before if they are enough. What rays have
+// found is shown each time that their number has doubled, and with the last.
+static void gather_once_more(struct frame *frame, struct voxel_volume *volume)
 {
     struct view *view = frame->view;
-    struct voxel_block *block = &volume->uniforms;
-    block->light[2] = frame->quality->specular_roughness;
-    block->settle[2] = frame->quality->specular_reflectance;
-    frame->still_frames = 1;
-    frame->still_count = 1;
-    if (frame->gather == GATHER_CACHE)
-        return;
-    frame->still_frames = frame->gather == GATHER_RAYS ? RAY_PICTURES : CONE_PICTURES;
-    if (!volume->light.converged) {
-        frame->gather = GATHER_CACHE;
-        frame->still_count = 0;
-        view->still_count = 0;
-        settle_quietly(frame, volume);
-        return;
-    }
-    uint64_t key = hash_vector(volume->light.version, block->pixel_march);
-    key = hash_word(key, view->volume_serial);
-    key = hash_word(key, (uint64_t)frame->gather);
-    if (frame->visibility_changed || frame->light_work.voxelize || key != view->gathered_key)
-        view->still_count = 0;
-    view->gathered_key = key;
     frame->gather_now = view->still_count < frame->still_frames;
     view->still_count += frame->gather_now;
     frame->still_count = view->still_count;
-    block->settle[1] = (float)view->still_count;
-    // What rays have found is shown each time that their number has doubled, and with the last.
-    bool doubled = (frame->still_count & (frame->still_count - 1)) == 0;
-    frame->quiet = frame->gather == GATHER_RAYS && frame->gather_now && frame->unchanged &&
-                   !doubled && frame->still_count < frame->still_frames;
+    volume->uniforms.settle[1] = (float)view->still_count;
+    bool doubled = (view->still_count & (view->still_count - 1)) == 0;
+    bool shown = view->still_count == frame->still_frames ||
+                 (doubled && !waits_for_rays(frame, view->still_count));
+    frame->quiet = frame->gather == GATHER_RAYS && frame->gather_now && frame->unchanged && !shown;
 }
 
 // Whether pixels read the cache rather than gather the last bounce themselves.
@@ -402,8 +397,42 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         .levels_per_frame = settings->levels_per_frame,
     };
     voxel_light_begin(volume, &light, &frame->light_work);
-    plan_gathering(frame, volume);
-    if (frame->gather == GATHER_RAYS && frame->gather_now && !resident_need_tree(frame->resident))
-        return error_set(out_error, "a tree of the scene's triangles does not fit into memory");
     return true;
+}
+
+bool gi_plan_gathering(struct frame *frame, struct error *out_error)
+{
+    struct view *view = frame->view;
+    struct voxel_volume *volume = frame->volume;
+    if (!volume)
+        return true;
+    struct voxel_block *block = &volume->uniforms;
+    frame->still_frames = 1;
+    frame->still_count = 1;
+    if (frame->gather == GATHER_RAYS)
+        frame->still_frames = frame->quality->ray_pictures;
+    else if (frame->gather != GATHER_CACHE)
+        frame->still_frames = CONE_PICTURES;
+    if (frame->gather != GATHER_CACHE) {
+        uint64_t key = hash_vector(volume->light.version, block->pixel_march);
+        key = hash_word(key, view->volume_serial);
+        key = hash_word(key, (uint64_t)frame->gather);
+        if (frame->visibility_changed || frame->light_work.voxelize || key != view->gathered_key)
+            view->still_count = 0;
+        view->gathered_key = key;
+        if (!volume->light.converged) {
+            show_cache(frame);
+            settle_quietly(frame, volume);
+        } else if (!frame->unchanged && waits_for_rays(frame, view->still_count)) {
+            show_cache(frame);
+        } else {
+            gather_once_more(frame, volume);
+        }
+    }
+    // One ray does for any lobe, so that all gloss has rays of its own where there are any.
+    bool rays = frame->gather == GATHER_RAYS;
+    block->light[2] = rays ? ALL_ROUGHNESS : frame->quality->specular_roughness;
+    block->settle[2] = rays ? 0.0f : frame->quality->specular_reflectance;
+    return !rays || !frame->gather_now || resident_need_tree(frame->resident) ||
+           error_set(out_error, "a tree of the scene's triangles does not fit into memory");
 }

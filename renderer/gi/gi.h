@@ -32,6 +32,11 @@ struct frame;
 // where no effect needs voxels. False with a message when memory ends.
 bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error);
 
+// Decides how pixels gather, once the frame's size is known: when the light has settled; until then
+// they show the cache. While nothing moves their pictures are averaged. False with a message when
+// memory ends.
+bool gi_plan_gathering(struct frame *frame, struct error *out_error);
+
 // How pixels of the frame gather in the end, as settings and quality say.
 enum gather_mode gi_gather_mode(const struct frame *frame);
 

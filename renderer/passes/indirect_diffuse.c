@@ -34,7 +34,7 @@ static bool gather_at_pixels(const struct frame *frame, const struct pass *pass,
         voxel_program(frame, pass, "gi/pixel_gather.comp", extra, out_error);
     if (!program)
         return false;
-    uint32_t pixels = frame->gather == GATHER_HALF ? 2 * GROUP_EDGE : GROUP_EDGE;
+    uint32_t pixels = gi_gather_step(frame) * GROUP_EDGE;
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
                  (frame->height + pixels - 1) / pixels, 1);
     gpu_barrier(frame->gpu);
@@ -46,9 +46,9 @@ static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
 {
     bool cached = frame->gather == GATHER_CACHE, rays = frame->gather == GATHER_RAYS;
     bool alone = frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;
-    char extra[48];
-    snprintf(extra, sizeof(extra), "GATHER %u\nFILTERED %d\nALONE %d\n",
-             cached ? 0 : gi_gather_step(frame), rays, alone);
+    char extra[64];
+    snprintf(extra, sizeof(extra), "CACHED %d\nGATHER_STEP %u\nFILTERED %d\nALONE %d\n", cached,
+             gi_gather_step(frame), rays, alone);
     if (!cached && frame->gather_now &&
         !(rays ? gather_by_rays(frame, out_error)
                : gather_at_pixels(frame, pass, extra, out_error)))

@@ -16,45 +16,58 @@ static const char *indirect_specular_skip_reason(const struct frame *frame)
     return shown ? NULL : "the debug view shows none";
 }
 
+// Lists the tiles whose gloss is traced, by limits that cones and rays do not share.
+static bool list_tiles(const struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    const struct gpu_program *list =
+        voxel_program(frame, pass, "gi/glossy_tiles.comp", "", out_error);
+    if (!list)
+        return false;
+    static const uint32_t no_groups[4] = {0, 1, 1, 0};
+    gpu_buffer_write(frame->view->glossy_tiles, 0, sizeof(no_groups), no_groups);
+    pass_dispatch_pixels(frame, list);
+    gpu_barrier(frame->gpu);
+    return true;
+}
+
 static bool gather_by_rays(const struct frame *frame, struct error *out_error)
 {
     const struct gpu_program *program = hit_program(frame, "gi/ray_gloss.comp", out_error);
     if (!program)
         return false;
-    gpu_bind_storage(frame->gpu, BIND_TILES, frame->view->glossy_tiles);
     gpu_dispatch_indirect(frame->gpu, program, frame->view->glossy_tiles, 0);
     gpu_barrier(frame->gpu);
     return filter_gathered(frame, true, out_error);
+}
+
+static bool add_gloss(const struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    bool rays = frame->gather == GATHER_RAYS;
+    char extra[48];
+    snprintf(extra, sizeof(extra), "SHARED %d\nRAYS %d\nGATHER_STEP %u\n",
+             frame->params->quality <= QUALITY_INTERACTIVE && !rays, rays, gi_gather_step(frame));
+    const struct gpu_program *trace =
+        voxel_program(frame, pass, "gi/indirect_specular.comp", extra, out_error);
+    if (!trace)
+        return false;
+    if (frame->params->debug_view == DEBUG_VIEW_INDIRECT_SPECULAR)
+        gpu_buffer_clear(frame->view->radiance);
+    gpu_dispatch_indirect(frame->gpu, trace, frame->view->glossy_tiles, 0);
+    return true;
 }
 
 static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
                                   struct error *out_error)
 {
     struct view *view = frame->view;
-    if (frame->quiet) // the tiles are those of before
-        return !frame->gather_now || gather_by_rays(frame, out_error);
-    const struct gpu_program *list =
-        voxel_program(frame, pass, "gi/glossy_tiles.comp", "", out_error);
-    bool rays = frame->gather == GATHER_RAYS;
-    char extra[48];
-    snprintf(extra, sizeof(extra), "SHARED %d\nRAYS %d\nGATHER_STEP %u\n",
-             frame->params->quality <= QUALITY_INTERACTIVE && !rays, rays, gi_gather_step(frame));
-    const struct gpu_program *trace =
-        list ? voxel_program(frame, pass, "gi/indirect_specular.comp", extra, out_error) : NULL;
-    if (!trace)
-        return false;
-    if (frame->params->debug_view == DEBUG_VIEW_INDIRECT_SPECULAR)
-        gpu_buffer_clear(view->radiance);
-    static const uint32_t no_groups[4] = {0, 1, 1, 0};
-    gpu_buffer_write(view->glossy_tiles, 0, sizeof(no_groups), no_groups);
+    bool gathers = frame->gather == GATHER_RAYS && frame->gather_now;
+    bool tiles_known = frame->quiet && frame->still_count != 1; // from the first of the pictures
     gpu_bind_storage(frame->gpu, BIND_TILES, view->glossy_tiles);
-    pass_dispatch_pixels(frame, list);
-    gpu_barrier(frame->gpu);
-    if (rays && frame->gather_now && !gather_by_rays(frame, out_error))
-        return false;
-    gpu_dispatch_indirect(frame->gpu, trace, view->glossy_tiles, 0);
+    bool done = (frame->quiet && !gathers) || tiles_known || list_tiles(frame, pass, out_error);
+    done = done && (!gathers || gather_by_rays(frame, out_error));
+    done = done && (frame->quiet || add_gloss(frame, pass, out_error));
     gpu_bind_storage(frame->gpu, BIND_TILES, view->transparent_tiles);
-    return true;
+    return done;
 }
 
 const struct pass indirect_specular_pass = {

@@ -45,7 +45,7 @@ void main()
 #if GLOSS
     others = smoothstep(FILTERED_ROUGHNESS.x, FILTERED_ROUGHNESS.y, s.roughness);
 #endif
-    vec4 sum = gathered[gathered_at(FROM, uvec2(place))];
+    vec4 sum = gathered_light[gathered_at(FROM, uvec2(place))];
     float weight = 1.0;
     for (int y = -2; y <= 2; y++)
         for (int x = -2; x <= 2; x++) {
@@ -58,7 +58,7 @@ void main()
                       (abs(y) == 2 ? 0.5 : 1.0);
             if (w <= 0.0)
                 continue;
-            sum += w * gathered[gathered_at(FROM, uvec2(other))];
+            sum += w * gathered_light[gathered_at(FROM, uvec2(other))];
             weight += w;
         }
 #if GLOSS
@@ -66,5 +66,5 @@ void main()
 #else
     vec4 mean = sum / (weight * voxels.settle.y);
 #endif
-    gathered[gathered_at(TO, uvec2(place))] = mean;
+    gathered_light[gathered_at(TO, uvec2(place))] = mean;
 }

@@ -1,10 +1,11 @@
 // Adds indirect diffuse light, or writes it where it is shown ALONE. In: G-buffer; irradiance cache
-// (GATHER 0), or what pixels have gathered themselves, every one (1) or every fourth (2). Out: radiance
-// in cd/m^2.
+// (CACHED 1), or what pixels have gathered themselves, every one (GATHER_STEP 1) or every fourth (2),
+// as sums or as means of neighbours (FILTERED 1). Out: radiance in cd/m^2.
 //
 // From the cache, an invocation takes 2x2 pixels: irradiance changes little between them, so that it is
 // looked up once and again only for pixels that lie on another surface.
 #define CELLS_ACCESS readonly
+#include "lib/gathered.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/irradiance_read.glsl"
 #include "lib/indirect_reflect.glsl"
@@ -12,7 +13,7 @@
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-#if GATHER == 0
+#if CACHED
 // Two pixels share their irradiance if neither normals nor places differ by more.
 const float SHARED_COSINE = 0.97;
 const float SHARED_VOXELS = 0.3;
@@ -46,28 +47,21 @@ void main()
     }
 }
 #else
-layout(std430, binding = BIND_INDIRECT) readonly buffer indirect_storage
-{
-    vec4 gathered_sums[]; // FILTERED 1: GATHERED_LIGHT_MEANS holds means of neighbours
-};
-
-// What a pixel has gathered; sums unless FILTERED.
-vec4 gathered_at(uint at)
+// What a pixel has gathered.
+vec4 found_at(uvec2 place)
 {
 #if FILTERED
-    uvec2 size = (frame.size.xy + uint(GATHER) - 1u) / uint(GATHER);
-    return gathered_sums[uint(GATHERED_LIGHT_MEANS) * size.x * size.y + at];
+    return gathered_light[gathered_at(GATHERED_LIGHT_MEANS, place)];
 #else
-    return gathered_sums[at] / voxels.settle.y;
+    return gathered_light[gathered_at(GATHERED_LIGHT, place)] / voxels.settle.y;
 #endif
 }
 
-#if GATHER == 2
+#if GATHER_STEP == 2
 // Joint bilateral upsampling (Kopf et al. 2007): the four gathered pixels around, by distance, and by
 // how much of the same surface they lie on.
-vec4 gathered_light(surface s, uvec2 pixel)
+vec4 upsampled_light(surface s, uvec2 pixel)
 {
-    uvec2 size = (frame.size.xy + 1u) / 2u;
     vec2 at = vec2(pixel) * 0.5;
     ivec2 low = ivec2(floor(at));
     vec2 t = at - vec2(low);
@@ -75,7 +69,7 @@ vec4 gathered_light(surface s, uvec2 pixel)
     float weight = 0.0;
     for (int i = 0; i < 4; i++) {
         ivec2 step = ivec2(i & 1, i >> 1);
-        ivec2 place = min(low + step, ivec2(size) - 1);
+        ivec2 place = min(low + step, ivec2(gathered_size()) - 1);
         surface other = gbuffer_load(uvec2(place) * 2u);
         if (other.shading >= SHADE_UNLIT)
             continue;
@@ -84,7 +78,7 @@ vec4 gathered_light(surface s, uvec2 pixel)
                     voxels.levels[0].size.y;
         float cosine = max(dot(other.normal, s.normal), 0.0);
         float w = (near.x * near.y + 1e-3) * exp(-4.0 * off) * pow(cosine, 8.0) + 1e-7;
-        sum += w * gathered_at(uint(place.y) * size.x + uint(place.x));
+        sum += w * found_at(uvec2(place));
         weight += w;
     }
     return weight > 0.0 ? sum / weight : vec4(0.0);
@@ -103,10 +97,10 @@ void main()
     surface s = gbuffer_load(pixel);
     if (s.shading >= SHADE_UNLIT)
         return;
-#if GATHER == 2
-    vec4 light = gathered_light(s, pixel);
+#if GATHER_STEP == 2
+    vec4 light = upsampled_light(s, pixel);
 #else
-    vec4 light = gathered_at(at);
+    vec4 light = found_at(pixel);
 #endif
     radiance[at].rgb += reflect_irradiance(s, light);
 }

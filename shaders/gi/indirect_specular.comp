@@ -22,7 +22,7 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 // What rays have found for the square of pixels that shares them.
 vec3 mirrored_light(surface s, uvec2 pixel)
 {
-    return gathered[gathered_at(GATHERED_GLOSS_MEANS, pixel / uint(GATHER_STEP))].rgb;
+    return gathered_light[gathered_at(GATHERED_GLOSS_MEANS, pixel / uint(GATHER_STEP))].rgb;
 }
 #else
 #define SPECULAR_OCCLUSION s.occlusion

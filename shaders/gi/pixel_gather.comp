@@ -1,27 +1,21 @@
-// Gathers irradiance at pixels, at every one (GATHER 1) or at every fourth (2), by cones that are
+// Gathers irradiance at pixels, at every one (GATHER_STEP 1) or at every fourth (2), by cones that are
 // turned from pixel to pixel and from frame to frame. In: G-buffer, radiance texture. Out: sums over
 // the frames in which nothing moved.
 #define CONE_SMOOTH 1
 #define PIXEL_CONES 1
+#include "lib/gathered.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/gather.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
-{
-    vec4 gathered_sums[];
-};
-
 void main()
 {
     uvec2 place = gl_GlobalInvocationID.xy;
-    uvec2 size = (frame.size.xy + uint(GATHER) - 1u) / uint(GATHER);
-    uvec2 pixel = place * uint(GATHER);
-    if (any(greaterThanEqual(place, size)))
+    if (any(greaterThanEqual(place, gathered_size())))
         return;
-    surface s = gbuffer_load(pixel);
-    uint at = place.y * size.x + place.x;
+    surface s = gbuffer_load(place * uint(GATHER_STEP));
+    uint at = gathered_at(GATHERED_LIGHT, place);
     bool first = voxels.settle.y <= 1.0;
     if (s.shading >= SHADE_UNLIT)
         return;
@@ -37,6 +31,6 @@ void main()
         uint hit;
         add_cone(g, i, found, hit);
     }
-    vec4 sum = first ? vec4(0.0) : gathered_sums[at];
-    gathered_sums[at] = sum + vec4(found.light, found.openness);
+    vec4 sum = first ? vec4(0.0) : gathered_light[at];
+    gathered_light[at] = sum + vec4(found.light, found.openness);
 }

@@ -33,5 +33,5 @@ void main()
         light = vec4(found.radiance / voxels.anchor.w, min(found.distance_m / voxels.light.x, 1.0));
     }
     uint at = gathered_at(GATHERED_LIGHT, place);
-    gathered[at] = (picture == 0u ? vec4(0.0) : gathered[at]) + light;
+    gathered_light[at] = (picture == 0u ? vec4(0.0) : gathered_light[at]) + light;
 }

@@ -62,7 +62,7 @@ void main()
         return;
     uvec2 place = first / uint(GATHER_STEP);
     uint at = gathered_at(GATHERED_GLOSS, place);
-    vec4 sum = picture == 0u ? vec4(0.0) : gathered[at];
+    vec4 sum = picture == 0u ? vec4(0.0) : gathered_light[at];
     float alpha = alpha_of(s);
     mat3 axes = frame_about(s.normal);
     vec3 view = s.view * axes;
@@ -78,5 +78,5 @@ void main()
                                       normalize(direction), u.z, spread, s.roughness, vec2(pixel));
         sum += share * vec4(found.radiance, 1.0);
     }
-    gathered[at] = sum;
+    gathered_light[at] = sum;
 }

@@ -4,7 +4,7 @@
 
 layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
 {
-    vec4 gathered[];
+    vec4 gathered_light[];
 };
 
 uvec2 gathered_size()

@@ -81,25 +81,33 @@ static void copy_pixels(const struct frame_pixels *pixels, struct test_picture *
     }
 }
 
-uint32_t gi_converge(struct renderer *renderer, struct view *view,
-                     const struct frame_params *params, struct test_picture *out_picture)
+enum render_result gi_draw_once(struct renderer *renderer, struct view *view,
+                                const struct frame_params *params, struct test_picture *out_picture)
 {
     struct error error = {""};
     struct frame_pixels pixels;
+    enum render_result result = renderer_view_draw(renderer, view, params, &error);
+    if (result == RENDER_DRAWN && !renderer_view_collect(renderer, view, true, &pixels))
+        result = RENDER_FAILED;
+    if (result == RENDER_FAILED)
+        print_error("a frame failed: %s\n", error.message);
+    if (result != RENDER_DRAWN)
+        return result;
+    copy_pixels(&pixels, out_picture);
+    renderer_view_release(renderer, view);
+    return result;
+}
+
+uint32_t gi_converge(struct renderer *renderer, struct view *view,
+                     const struct frame_params *params, struct test_picture *out_picture)
+{
     for (uint32_t frame = 0; frame < GI_MAX_FRAMES; frame++) {
-        enum render_result result = renderer_view_draw(renderer, view, params, &error);
-        if (result == RENDER_UNCHANGED && frame > 0)
-            return frame;
-        if (result != RENDER_DRAWN || !renderer_view_collect(renderer, view, true, &pixels)) {
-            print_error("frame %u: result %d: %s\n", frame, result, error.message);
-            return 0;
-        }
-        copy_pixels(&pixels, out_picture);
-        renderer_view_release(renderer, view);
+        enum render_result result = gi_draw_once(renderer, view, params, out_picture);
+        if (result != RENDER_DRAWN)
+            return result == RENDER_UNCHANGED ? frame : 0;
     }
     unconverged_pictures++;
-    print_message("      not converged after %u frames: convergence %.4f\n", GI_MAX_FRAMES,
-                  (double)pixels.convergence);
+    print_message("      not converged after %u frames\n", GI_MAX_FRAMES);
     return GI_MAX_FRAMES;
 }
 
@@ -188,5 +196,6 @@ struct frame_params gi_params(uint32_t width, uint32_t height, enum gi_method me
     params.quality = QUALITY_INTERACTIVE;
     params.settings.gi_method = method;
     params.settings.soft_shadows = false;
+    params.settings.gather_mode = GATHER_CACHE; // voxels are judged, not what rays make of them
     return params;
 }

@@ -28,6 +28,11 @@ void gi_check_ratio(struct gi_report *report, double measured, double expected, 
 // Fails the test if anything was bad or nothing was checked.
 void gi_report_finish(const struct gi_report *report);
 
+// Draws one frame of a scene that is shown; prints why if that fails. The picture is made at need.
+enum render_result gi_draw_once(struct renderer *renderer, struct view *view,
+                                const struct frame_params *params,
+                                struct test_picture *out_picture);
+
 // Draws with the same parameters until RENDER_UNCHANGED, at most GI_MAX_FRAMES times; beyond that
 // says so, and gi_report_finish() fails. Returns the number of frames; 0, with the reason printed,
 // if one cannot be drawn. The scene must have been shown by renderer_set_scene().

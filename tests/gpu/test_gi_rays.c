@@ -91,10 +91,50 @@ static void test_rays_find_what_voxels_do_not(void **state)
     gi_report_finish(&report);
 }
 
+// A ray a pixel is noisier than the cache: while somebody moves nobody is to see that, nor to wait.
+static void test_pictures_in_motion_show_the_cache(void **state)
+{
+    (void)state;
+    struct error error = {""};
+    struct scene *scene = gi_table_scene();
+    assert_true(renderer_set_scene(test_renderer(), scene, &error));
+    struct frame_params params[2];
+    struct view *views[2];
+    struct test_picture still[2] = {0};
+    for (int i = 0; i < 2; i++) {
+        params[i] = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_GRID);
+        params[i].settings.gather_mode = i == 0 ? GATHER_CACHE : GATHER_RAYS;
+        gi_scene_camera(scene, &params[i].camera);
+        views[i] = renderer_view_create(test_renderer());
+        assert_non_null(views[i]);
+        assert_true(gi_converge(test_renderer(), views[i], &params[i], &still[i]) > 0);
+    }
+    size_t bytes = (size_t)PICTURE_EDGE * PICTURE_EDGE * 4 * sizeof(float);
+    assert_int_not_equal(memcmp(still[0].pixels, still[1].pixels, bytes), 0);
+    for (int step = 0; step < 3; step++) {
+        struct test_picture moving[2] = {0};
+        for (int i = 0; i < 2; i++) {
+            params[i].camera.eye[0] += 0.01f;
+            assert_int_equal(gi_draw_once(test_renderer(), views[i], &params[i], &moving[i]),
+                             RENDER_DRAWN);
+        }
+        assert_memory_equal(moving[0].pixels, moving[1].pixels, bytes);
+        gi_picture_finish(&moving[0]);
+        gi_picture_finish(&moving[1]);
+    }
+    for (int i = 0; i < 2; i++) {
+        gi_picture_finish(&still[i]);
+        renderer_view_destroy(test_renderer(), &views[i]);
+    }
+    assert_true(renderer_set_scene(test_renderer(), NULL, &error));
+    scene_destroy(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rays_find_what_voxels_do_not),
+        cmocka_unit_test(test_pictures_in_motion_show_the_cache),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);
 }

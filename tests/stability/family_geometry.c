@@ -18,10 +18,11 @@ static bool draw_with(struct stability_run *run, add_function add, struct pictur
 {
     struct stage stage;
     *out_picture = (struct picture){0};
+    if (!add)
+        return stage_draw_usual(run, out_picture);
     if (!stage_create(run, &(struct stage_params){0}, &stage))
         return false;
-    if (add)
-        add(&stage);
+    add(&stage);
     return stage_draw(run, &stage, out_picture);
 }
 
@@ -140,9 +141,9 @@ static void run_slivers(struct stability_run *run)
 }
 
 // A sheet that faces the camera and the lamp, of cells x cells quads, many times over.
-static void add_sheet(struct stage *stage, uint32_t cells, uint32_t copies,
-                      void (*change)(struct scene_vertex triangle[3], uint32_t number),
-                      uint32_t material)
+static void add_sheet_of(struct stage *stage, float size_m, uint32_t cells, uint32_t copies,
+                         void (*change)(struct scene_vertex triangle[3], uint32_t number),
+                         uint32_t material)
 {
     uint32_t count = 2 * cells * cells * copies;
     struct scene_vertex *v = malloc((size_t)count * 3 * sizeof(*v));
@@ -151,7 +152,7 @@ static void add_sheet(struct stage *stage, uint32_t cells, uint32_t copies,
         uint32_t cell = i / 6 % (cells * cells);
         float x = (float)(cell % cells) + (float)corners[i % 6][0];
         float y = (float)(cell / cells) + (float)corners[i % 6][1];
-        v[i] = stage_vertex(x / (float)cells, y / (float)cells, 0.0f);
+        v[i] = stage_vertex(size_m * x / (float)cells, size_m * y / (float)cells, 0.0f);
         memcpy(v[i].normal, (float[3]){0.0f, 0.0f, 1.0f}, sizeof(v[i].normal));
         v[i].uv[0][0] = v[i].position[0];
         v[i].uv[0][1] = v[i].position[1];
@@ -161,6 +162,13 @@ static void add_sheet(struct stage *stage, uint32_t cells, uint32_t copies,
     if (v)
         stage_add_triangles(stage, v, count, material, (const float[3]){-1.0f, 1.0f, 0.0f});
     free(v);
+}
+
+static void add_sheet(struct stage *stage, uint32_t cells, uint32_t copies,
+                      void (*change)(struct scene_vertex triangle[3], uint32_t number),
+                      uint32_t material)
+{
+    add_sheet_of(stage, 1.0f, cells, copies, change, material);
 }
 
 static uint32_t two_sided(struct stage *stage)
@@ -343,12 +351,12 @@ static void color_by_mean(struct scene_vertex triangle[3], uint32_t number)
 
 static void add_many_fragments(struct stage *stage)
 {
-    add_sheet(stage, FRAGMENT_CELLS, FRAGMENT_COPIES, color_in_turns, two_sided(stage));
+    add_sheet_of(stage, 0.25f, FRAGMENT_CELLS, FRAGMENT_COPIES, color_in_turns, two_sided(stage));
 }
 
 static void add_mean_sheet(struct stage *stage)
 {
-    add_sheet(stage, FRAGMENT_CELLS, 1, color_by_mean, two_sided(stage));
+    add_sheet_of(stage, 0.25f, FRAGMENT_CELLS, 1, color_by_mean, two_sided(stage));
 }
 
 // Voxels' albedo, looked at: the mean of all that is in them.

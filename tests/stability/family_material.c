@@ -127,6 +127,8 @@ static bool draw_sheets(struct stability_run *run, const struct scene_material *
 {
     struct stage stage;
     *out_picture = (struct picture){0};
+    if (count == 0)
+        return stage_draw_usual(run, out_picture);
     if (!stage_create(run, &(struct stage_params){0}, &stage))
         return false;
     add_sheets(&stage, material, count, 0.0f);

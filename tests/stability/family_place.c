@@ -19,7 +19,7 @@ static void compare_places(struct stability_run *run, const struct stage_params 
                            uint32_t count, const char *const *names)
 {
     struct picture truth;
-    if (!draw_stage(run, &(struct stage_params){0}, &truth))
+    if (!stage_draw_usual(run, &truth))
         return;
     stability_keep(run, &truth, "usual");
     for (uint32_t i = 0; i < count; i++) {

@@ -9,7 +9,8 @@ struct stability {
     const char *gpu;
     const char *folder; // NULL for none
     struct renderer *renderer;
-    uint64_t gl_errors; // of the renderer, told already
+    uint64_t gl_errors;                    // of the renderer, told already
+    struct picture usual[GI_METHOD_COUNT]; // of the usual stage, once drawn; owned
     char gl_renderer[128];
     double seconds;
     uint32_t run_count, failures, known;

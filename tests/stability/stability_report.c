@@ -154,6 +154,8 @@ bool stability_run_cases(const struct stability_choice *choice, uint32_t *out_fa
                   choice->name ? choice->name : "any", choice->family ? " in family \"" : "",
                   choice->family ? choice->family : "", choice->family ? "\"" : "");
     stability_end_renderer(&suite);
+    for (int method = 0; method < GI_METHOD_COUNT; method++)
+        picture_finish(&suite.usual[method]);
     suite.seconds = (clock_now_ms() - start_ms) / 1e3;
     if (done)
         printf("%u runs, %u fail, %u known to miss their bound, %.0f s\n", suite.run_count,

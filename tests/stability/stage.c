@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "renderer/scene/builtin/builtin.h"
+#include "tests/stability/stability_internal.h"
 
 #define LAMP_CD 30.0f
 
@@ -149,4 +150,23 @@ bool stage_draw(struct stability_run *run, struct stage *stage, struct picture *
     bool done = stability_draw(run, stage->scene, &params, out_picture);
     scene_destroy(&stage->scene);
     return done;
+}
+
+static bool copy_picture(const struct picture *source, struct picture *out_copy)
+{
+    if (!picture_init(out_copy, source->width, source->height))
+        return false;
+    memcpy(out_copy->rgb, source->rgb, 3 * picture_pixel_count(source) * sizeof(float));
+    return true;
+}
+
+bool stage_draw_usual(struct stability_run *run, struct picture *out_picture)
+{
+    struct picture *usual = &run->suite->usual[run->method];
+    struct stage stage;
+    *out_picture = (struct picture){0};
+    if (!usual->rgb &&
+        (!stage_create(run, &(struct stage_params){0}, &stage) || !stage_draw(run, &stage, usual)))
+        return false;
+    return copy_picture(usual, out_picture);
 }

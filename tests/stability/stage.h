@@ -46,4 +46,7 @@ void stage_place(const struct stage *stage, const float place[3], float out_worl
 // As stability_draw(), from the stage's camera with the usual parameters; destroys the scene.
 bool stage_draw(struct stability_run *run, struct stage *stage, struct picture *out_picture);
 
+// The same of the usual stage, which is drawn once and then remembered.
+bool stage_draw_usual(struct stability_run *run, struct picture *out_picture);
+
 #endif
