@@ -27,8 +27,7 @@ static void place_cascade(struct frame *frame, uint32_t i)
         center[axis] = step * roundf(frame->camera.eye[axis] / step);
     float moved = 0.0f;
     for (int axis = 0; axis < 3; axis++)
-        moved =
-            fmaxf(moved, fabsf(frame->camera.eye[axis] - view->cascade_center[i][axis]));
+        moved = fmaxf(moved, fabsf(frame->camera.eye[axis] - view->cascade_center[i][axis]));
     if (view->cascade_placed[i] && moved <= 2.0f * step)
         return;
     memcpy(view->cascade_center[i], center, sizeof(center));
