@@ -106,7 +106,8 @@ static bool room_mean(struct stability_run *run, const struct rooms *rooms, int 
     turned(rooms, (const float[3]){0.0f, 1.0f, 0.0f}, params.camera.up);
     params.camera.fov_y_rad = 1.7f;
     params.width = params.height = 24;
-    params.settings.bounces = 1;
+    // Rays find what leaks into voxels with the second bounce.
+    params.settings.bounces = quality == QUALITY_INTERACTIVE ? 1 : 2;
     params.settings.clip_levels = 0;
     params.quality = quality;
     if (quality != QUALITY_INTERACTIVE)
