@@ -106,8 +106,8 @@
 // Cube faces and spots see a little more than they need, for the filter's taps at the rim.
 #define SHADOW_FACE_MARGIN 1.02f
 
-// A lamp is never nearer to what it lights than this share of the scene's diagonal, nor than so many
-// metres where that is more: its light would have no end.
+// A lamp is never nearer to what it lights than this share of the scene's diagonal, nor than so
+// many metres where that is more: its light would have no end.
 #define LAMP_LEAST_SHARE 1e-4f
 #define LAMP_LEAST_M     1e-3f
 
