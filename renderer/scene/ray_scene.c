@@ -103,13 +103,11 @@ static struct RTCHit get_hit(const void *hits, uint32_t count, uint32_t number)
 static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
 {
     for (uint32_t i = 0; i < arguments->N; i++) {
-        if (!arguments->valid[i]) {
+        if (!arguments->valid[i])
             continue;
-        }
         struct RTCHit hit = get_hit(arguments->hit, arguments->N, i);
-        if (is_hole(arguments->geometryUserPtr, &hit)) {
+        if (is_hole(arguments->geometryUserPtr, &hit))
             arguments->valid[i] = 0;
-        }
     }
 }
 
@@ -129,13 +127,11 @@ static bool stops_ray(const struct RTCFilterFunctionNArguments *arguments, uint3
 {
     const struct filter_data *data = arguments->geometryUserPtr;
     struct RTCHit hit = get_hit(arguments->hit, arguments->N, number);
-    if (data->is_masked && is_hole(data, &hit)) {
+    if (data->is_masked && is_hole(data, &hit))
         return false;
-    }
     const struct light_context *light = (const struct light_context *)arguments->context;
-    if (!data->lets_light_pass) {
+    if (!data->lets_light_pass)
         return true;
-    }
     struct ray_crossing crossing = crossing_of(
         light->ray_scene, &hit, get_float(arguments->ray, arguments->N, RAY_DISTANCE, number));
     return light->stops_light &&
@@ -147,9 +143,8 @@ static bool stops_ray(const struct RTCFilterFunctionNArguments *arguments, uint3
 static void filter_occlusion(const struct RTCFilterFunctionNArguments *arguments)
 {
     for (uint32_t i = 0; i < arguments->N; i++) {
-        if (arguments->valid[i] && !stops_ray(arguments, i)) {
+        if (arguments->valid[i] && !stops_ray(arguments, i))
             arguments->valid[i] = 0;
-        }
     }
 }
 
@@ -194,9 +189,8 @@ static RTCScene build_mesh(struct ray_scene *ray_scene, uint32_t mesh)
     const struct scene_mesh *source = &ray_scene->scene->meshes[mesh];
     RTCScene built = rtcNewScene(ray_scene->device);
     rtcSetSceneFlags(built, RTC_SCENE_FLAG_ROBUST);
-    for (uint32_t i = 0; i < source->primitive_count; i++) {
+    for (uint32_t i = 0; i < source->primitive_count; i++)
         attach_primitive(ray_scene, built, source->primitive_first + i, i);
-    }
     rtcCommitScene(built);
     return built;
 }
@@ -220,9 +214,8 @@ static void add_instances(struct ray_scene *ray_scene)
     const struct scene *scene = ray_scene->scene;
     for (uint32_t node = 0; node < scene->node_count; node++) {
         uint32_t mesh = scene->nodes[node].mesh;
-        if (mesh == SCENE_NONE) {
+        if (mesh == SCENE_NONE)
             continue;
-        }
         if (!ray_scene->meshes[mesh]) {
             ray_scene->meshes[mesh] = build_mesh(ray_scene, mesh);
         }
@@ -239,9 +232,8 @@ static void add_instances(struct ray_scene *ray_scene)
 
 static uint32_t native_width(RTCDevice device)
 {
-    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) {
+    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED))
         return 16;
-    }
     return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
 }
 
@@ -254,9 +246,8 @@ struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *para
 {
     const struct scene *scene = params->scene;
     struct ray_scene *ray_scene = calloc(1, sizeof(*ray_scene));
-    if (!ray_scene) {
+    if (!ray_scene)
         return NULL;
-    }
     ray_scene->scene = scene;
     ray_scene->mesh_count = scene->mesh_count;
     ray_scene->device = rtcNewDevice(params->calling_thread_only ? "threads=1" : NULL);
@@ -281,9 +272,8 @@ struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *para
     rtcSetSceneFlags(ray_scene->top, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
     add_instances(ray_scene);
     ray_scene_update_transforms(ray_scene);
-    if (rtcGetDeviceError(ray_scene->device) != RTC_ERROR_NONE) {
+    if (rtcGetDeviceError(ray_scene->device) != RTC_ERROR_NONE)
         ray_scene_destroy(&ray_scene);
-    }
     return ray_scene;
 }
 
@@ -291,20 +281,17 @@ void ray_scene_destroy(struct ray_scene **ray_scene_slot)
 {
     struct ray_scene *ray_scene = *ray_scene_slot;
     *ray_scene_slot = NULL;
-    if (!ray_scene) {
+    if (!ray_scene)
         return;
-    }
     if (ray_scene->top) {
         rtcReleaseScene(ray_scene->top);
     }
     for (uint32_t i = 0; ray_scene->meshes && i < ray_scene->mesh_count; i++) {
-        if (ray_scene->meshes[i]) {
+        if (ray_scene->meshes[i])
             rtcReleaseScene(ray_scene->meshes[i]);
-        }
     }
-    if (ray_scene->device) {
+    if (ray_scene->device)
         rtcReleaseDevice(ray_scene->device);
-    }
     free(ray_scene->meshes);
     free(ray_scene->filters);
     free(ray_scene->lets_light_pass);
@@ -319,13 +306,11 @@ static double adjugate(const float matrix[16], double out_rows[3][3])
 {
     double columns[3][3];
     for (int axis = 0; axis < 3; axis++) {
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; i++)
             columns[axis][i] = matrix[axis * 4 + i];
-        }
     }
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; axis++)
         vector3_cross(out_rows[axis], columns[(axis + 1) % 3], columns[(axis + 2) % 3]);
-    }
     return vector3_dot(out_rows[0], columns[0]);
 }
 
@@ -335,9 +320,8 @@ static bool is_usable_matrix(const float matrix[16], float extent)
     double rows[3][3];
     double largest = 0;
     for (int i = 0; i < 16; i++) {
-        if (!isfinite(matrix[i])) {
+        if (!isfinite(matrix[i]))
             return false;
-        }
         largest = fmax(largest, fabs((double)matrix[i]) * (i < 12 ? extent : 1.0));
     }
     return largest < RAY_SCENE_MAX_EXTENT && fabs(adjugate(matrix, rows)) > 1e-30;
@@ -370,23 +354,20 @@ void ray_scene_update_materials(struct ray_scene *ray_scene)
         bool rebuild = false;
         for (uint32_t i = 0; ray_scene->meshes[mesh] && i < source->primitive_count; i++) {
             uint32_t primitive = source->primitive_first + i;
-            if (ray_scene->filters[primitive].is_masked == is_masked(scene, primitive)) {
+            if (ray_scene->filters[primitive].is_masked == is_masked(scene, primitive))
                 continue;
-            }
             RTCGeometry geometry = rtcGetGeometry(ray_scene->meshes[mesh], i);
             ray_scene->filters[primitive].is_masked = is_masked(scene, primitive);
             set_filters(geometry, &ray_scene->filters[primitive]);
             rtcCommitGeometry(geometry);
             rebuild = true;
         }
-        if (rebuild) {
+        if (rebuild)
             rtcCommitScene(ray_scene->meshes[mesh]);
-        }
         any_rebuilt = any_rebuilt || rebuild;
     }
-    if (any_rebuilt) {
+    if (any_rebuilt)
         ray_scene_update_transforms(ray_scene);
-    }
 }
 
 // The geometric normal in world space, unit length, on the side the ray comes from.
@@ -399,15 +380,13 @@ static void fill_normal(const struct scene_node *node, const struct RTCHit *hit,
     adjugate(node->world_from_local, rows);
     const double local[3] = {hit->Ng_x, hit->Ng_y, hit->Ng_z};
     for (int axis = 0; axis < 3; axis++) {
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; i++)
             normal[i] += rows[axis][i] * local[axis];
-        }
     }
     double length = vector3_length(normal);
     double facing = normal[0] * direction[0] + normal[1] * direction[1] + normal[2] * direction[2];
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; axis++)
         out_normal[axis] = length > 0 ? (float)(normal[axis] / (facing > 0 ? -length : length)) : 0;
-    }
 }
 
 // Field by field in place: a copy of what has just been written in parts would wait for the parts.
@@ -510,9 +489,8 @@ static inline void cast_all(const struct ray_scene *ray_scene, struct ray_batch 
     }
     for (uint32_t first = 0; width > 1 && first < batch->count; first += width) {
         _Alignas(64) int valid[16];
-        for (uint32_t i = 0; i < width; i++) {
+        for (uint32_t i = 0; i < width; i++)
             valid[i] = first + i < batch->count ? -1 : 0;
-        }
         float *packet = ray_batch_fields(batch, first);
         fill_packet(packet, width, first);
         cast(ray_scene->top, valid, width, context, packet);
@@ -541,9 +519,8 @@ bool ray_scene_get_crossing(const struct ray_scene *ray_scene, const struct ray_
     uint32_t width = batch->width;
     const float *fields = ray_batch_fields(batch, ray);
     struct RTCHit hit = get_hit(fields + (size_t)RAY_HIT * width, width, 0);
-    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+    if (hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
-    }
     *out_crossing = crossing_of(ray_scene, &hit, fields[RAY_DISTANCE * width]);
     return true;
 }
@@ -574,9 +551,8 @@ bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3
                          const float direction[3], float max_distance, struct ray_hit *out_hit)
 {
     bool finite = isfinite(max_distance) && max_distance > 0;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; axis++)
         finite = finite && isfinite(origin[axis]) && isfinite(direction[axis]);
-    }
     if (!finite || (direction[0] == 0 && direction[1] == 0 && direction[2] == 0)) {
         return false;
     }
@@ -584,9 +560,8 @@ bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3
                             .direction = {direction[0], direction[1], direction[2]},
                             .max_distance = max_distance};
     struct RTCRayHit query;
-    if (!find_nearest(ray_scene, &ray, &query)) {
+    if (!find_nearest(ray_scene, &ray, &query))
         return false;
-    }
     struct ray_crossing crossing = crossing_of(ray_scene, &query.hit, query.ray.tfar);
     const struct scene *scene = ray_scene->scene;
     const struct scene_node *node = &scene->nodes[crossing.node];
@@ -597,9 +572,8 @@ bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3
     out_hit->barycentric[0] = query.hit.u;
     out_hit->barycentric[1] = query.hit.v;
     out_hit->distance = query.ray.tfar;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; axis++)
         out_hit->position[axis] = origin[axis] + direction[axis] * query.ray.tfar;
-    }
     fill_normal(node, &query.hit, direction, out_hit->normal);
     return true;
 }
