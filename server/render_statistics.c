@@ -5,6 +5,14 @@
 
 #include "server/clock.h"
 
+static void add_amount(cJSON *list, const char *name, const char *key, double amount)
+{
+    cJSON *item = cJSON_CreateObject();
+    cJSON_AddStringToObject(item, "name", name);
+    cJSON_AddNumberToObject(item, key, amount);
+    cJSON_AddItemToArray(list, item);
+}
+
 static void add_passes(cJSON *params, const struct frame_statistics *statistics)
 {
     cJSON *passes = cJSON_AddArrayToObject(params, "passes");
@@ -26,19 +34,13 @@ static void add_passes(cJSON *params, const struct frame_statistics *statistics)
         cJSON_AddItemToArray(effects, item);
     }
     cJSON *memory = cJSON_AddArrayToObject(params, "memory");
-    for (uint32_t i = 0; i < statistics->memory_count; i++) {
-        cJSON *item = cJSON_CreateObject();
-        cJSON_AddStringToObject(item, "name", statistics->memory[i].name);
-        cJSON_AddNumberToObject(item, "bytes", (double)statistics->memory[i].bytes);
-        cJSON_AddItemToArray(memory, item);
-    }
+    for (uint32_t i = 0; i < statistics->memory_count; i++)
+        add_amount(memory, statistics->memory[i].name, "bytes",
+                   (double)statistics->memory[i].bytes);
     cJSON *rejects = cJSON_AddArrayToObject(params, "rejects");
-    for (uint32_t i = 0; i < statistics->reject_count; i++) {
-        cJSON *item = cJSON_CreateObject();
-        cJSON_AddStringToObject(item, "name", statistics->rejects[i].name);
-        cJSON_AddNumberToObject(item, "count", (double)statistics->rejects[i].count);
-        cJSON_AddItemToArray(rejects, item);
-    }
+    for (uint32_t i = 0; i < statistics->reject_count; i++)
+        add_amount(rejects, statistics->rejects[i].name, "count",
+                   (double)statistics->rejects[i].count);
 }
 
 // The stage that takes longest. Waiting for an acknowledgement counts only in so far as it is

@@ -26,22 +26,12 @@ static bool draw_with(struct stability_run *run, add_function add, struct pictur
     return stage_draw(run, &stage, out_picture);
 }
 
-static void tell_difference(struct stability_run *run, const struct picture *test,
-                            const struct picture *truth)
-{
-    uint32_t pixel = 0;
-    double difference = stability_difference(test, truth, &pixel);
-    stability_measure(run, difference, "pixel %u, %u", pixel % test->width, pixel / test->width);
-    stability_keep(run, truth, "expected");
-    stability_keep(run, test, "drawn");
-}
-
 // What `hard` adds looks as what `plain` adds (NULL: nothing), to the last pixel.
 static void compare(struct stability_run *run, add_function hard, add_function plain)
 {
     struct picture truth, test;
     if (draw_with(run, plain, &truth) && draw_with(run, hard, &test)) {
-        tell_difference(run, &test, &truth);
+        stability_compare(run, &test, &truth, "");
         picture_finish(&test);
     }
     picture_finish(&truth);
@@ -413,7 +403,7 @@ static void run_many_fragments(struct stability_run *run)
         scene_destroy(&stage.scene);
     }
     if (pictures[0].rgb && pictures[1].rgb)
-        tell_difference(run, &pictures[1], &pictures[0]);
+        stability_compare(run, &pictures[1], &pictures[0], "");
     picture_finish(&pictures[0]);
     picture_finish(&pictures[1]);
 }

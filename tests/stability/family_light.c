@@ -12,15 +12,6 @@ static void scale_picture(struct picture *picture, double factor)
         picture->rgb[i] = (float)(picture->rgb[i] * factor);
 }
 
-static void compare(struct stability_run *run, const struct picture *test,
-                    const struct picture *truth, const char *what)
-{
-    uint32_t pixel = 0;
-    double difference = stability_difference(test, truth, &pixel);
-    stability_measure(run, difference, "%s, pixel %u, %u", what, pixel % test->width,
-                      pixel / test->width);
-}
-
 static void run_intensities(struct stability_run *run)
 {
     static const double strengths[] = {1e-6, 1e-3, 1e4, 1e9};
@@ -37,7 +28,7 @@ static void run_intensities(struct stability_run *run)
             !stage_draw(run, &stage, &test))
             break;
         scale_picture(&test, 1.0 / strengths[i]);
-        compare(run, &test, &truth, name);
+        stability_compare(run, &test, &truth, name);
         picture_finish(&test);
     }
     picture_finish(&truth);
@@ -166,8 +157,7 @@ static void run_wide_spot(struct stability_run *run)
     if (!draw_spot(run, SCENE_LIGHT_POINT, 0.0f, &point))
         return;
     if (draw_spot(run, SCENE_LIGHT_SPOT, 1.57079633f, &spot)) {
-        compare(run, &spot, &point, "spot of 180 degrees");
-        stability_keep(run, &spot, "spot");
+        stability_compare(run, &spot, &point, "spot of 180 degrees");
         picture_finish(&spot);
     }
     picture_finish(&point);
@@ -208,7 +198,7 @@ static void run_thousand(struct stability_run *run)
     if (!draw_many(run, 1, &one))
         return;
     if (draw_many(run, MANY_LIGHTS, &many)) {
-        compare(run, &many, &one, "1000 lamps");
+        stability_compare(run, &many, &one, "1000 lamps");
         picture_finish(&many);
     }
     picture_finish(&one);

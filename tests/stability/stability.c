@@ -16,8 +16,13 @@
 
 double stability_bound(const struct stability_run *run)
 {
-    bool voxels = (STABILITY_VOXELS & 1u << run->method) != 0;
-    return voxels && run->test->voxel_bound > 0.0 ? run->test->voxel_bound : run->test->bound;
+    const struct stability_case *test = run->test;
+    double bound = 0.0;
+    if ((STABILITY_VOXELS & 1u << run->method) != 0)
+        bound = test->voxel_bound;
+    else if (run->method == GI_METHOD_REFERENCE)
+        bound = test->reference_bound;
+    return bound > 0.0 ? bound : test->bound;
 }
 
 void stability_measure(struct stability_run *run, double value, const char *format, ...)
@@ -289,6 +294,9 @@ void stability_keep(struct stability_run *run, const struct picture *picture, co
     char path[4096];
     snprintf(file, sizeof(run->pictures[0]), "%s-%s-%s.png", run->test->name,
              gi_method_names[run->method], name);
+    bool kept = false; // already under this name: the newer takes its place
+    for (uint32_t i = 0; i < run->picture_count; i++)
+        kept |= strcmp(run->pictures[i], file) == 0;
     snprintf(path, sizeof(path), "%s/%s", run->suite->folder, file);
     uint8_t *bytes = malloc(3 * picture_pixel_count(picture));
     struct display_params display = {.exposure = display_automatic_exposure(picture),
@@ -298,7 +306,7 @@ void stability_keep(struct stability_run *run, const struct picture *picture, co
         return;
     display_bytes(&display, picture, bytes);
     if (cli_write_png(path, picture->width, picture->height, bytes, &error))
-        run->picture_count++;
+        run->picture_count += !kept;
     else
         stability_fail(run, "%s", error.message);
     free(bytes);

@@ -25,11 +25,12 @@ struct stability_run;
 
 struct stability_case {
     const char *name;
-    const char *invariant; // in one line
-    unsigned methods;      // STABILITY_ bits
-    double bound;          // what is measured must not be greater
-    double voxel_bound;    // the same with voxels; 0: `bound`
-    const char *unit;      // of bound and measured value
+    const char *invariant;  // in one line
+    unsigned methods;       // STABILITY_ bits
+    double bound;           // what is measured must not be greater
+    double voxel_bound;     // the same with voxels; 0: `bound`
+    double reference_bound; // the same of the reference; 0: `bound`
+    const char *unit;       // of bound and measured value
     // For a case that is known to miss its bound: what it must not exceed meanwhile; else 0.
     double known;
     void (*run)(struct stability_run *run);
@@ -120,6 +121,11 @@ double stability_flip(const struct picture *test, const struct picture *truth);
 // where. Infinite where a value is not finite.
 double stability_difference(const struct picture *test, const struct picture *truth,
                             uint32_t *out_pixel);
+
+// Measures stability_difference() and keeps both pictures. `what` ("" for nothing) tells which of
+// several comparisons it is.
+void stability_compare(struct stability_run *run, const struct picture *test,
+                       const struct picture *truth, const char *what);
 
 // Channels that differ in any bit.
 uint64_t stability_count_changed(const struct picture *a, const struct picture *b);

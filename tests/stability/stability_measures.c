@@ -49,6 +49,17 @@ double stability_difference(const struct picture *test, const struct picture *tr
     return worst;
 }
 
+void stability_compare(struct stability_run *run, const struct picture *test,
+                       const struct picture *truth, const char *what)
+{
+    uint32_t pixel = 0;
+    double difference = stability_difference(test, truth, &pixel);
+    stability_measure(run, difference, "%s%spixel %u, %u", what, *what ? ", " : "",
+                      pixel % test->width, pixel / test->width);
+    stability_keep(run, truth, "expected");
+    stability_keep(run, test, "drawn");
+}
+
 uint64_t stability_count_changed(const struct picture *a, const struct picture *b)
 {
     uint64_t changed = 0;
