@@ -59,12 +59,13 @@ void main()
     vec3 corner = vec3(slot_voxel(level, cells[cell * CELL_WORDS] & CELL_SLOT_MASK));
     vec3 normal = octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL]));
     uint bits = faces[words + FACE_PLACE];
-    vec3 place = vec3(bits & 1023u, (bits >> 10) & 1023u, bits >> 20) / 1023.0;
+    vec3 place = vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0;
     vec3 position = (corner + place) * voxels.levels[level].size.x;
     // Neighbours look in different directions, so that interpolation between them averages more.
     ivec3 odd = ivec3(corner) & 1;
     float angle = float(odd.x + 2 * odd.y + 4 * odd.z) * (PI / 4.0);
-    gather_cones g = begin_gather(position, normal, vec2(cos(angle), sin(angle)));
+    gather_cones g = begin_gather(position, normal, (bits & FACE_THIN) != 0u,
+                                  vec2(cos(angle), sin(angle)));
     gathered found = no_light();
 #if MARCH
     gathered along = no_light();

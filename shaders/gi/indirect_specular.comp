@@ -31,7 +31,7 @@ vec3 mirrored_light(surface s, uvec2 pixel)
     vec3 mirror = reflect(-s.view, s.normal);
     // A normal map can turn the mirror ray into the surface.
     mirror += s.geometric_normal * max(0.01 - dot(mirror, s.geometric_normal), 0.0);
-    return trace_gloss(s.position, s.geometric_normal, normalize(mirror), s.roughness);
+    return trace_gloss(s.position, s.geometric_normal, s.thin, normalize(mirror), s.roughness);
 }
 #endif
 

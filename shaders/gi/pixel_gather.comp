@@ -25,7 +25,8 @@ void main()
     float frame_number = voxels.settle.y - 1.0;
     float turn = 2.0 * PI * fract((float(order) + frame_number) * 0.25 +
                                   floor(frame_number * 0.25) * 0.61803399);
-    gather_cones g = begin_gather(voxel_position(s.position), s.normal, vec2(cos(turn), sin(turn)));
+    gather_cones g = begin_gather(voxel_position(s.position), s.normal, s.thin,
+                                  vec2(cos(turn), sin(turn)));
     gathered found = no_light();
     for (uint i = 0u; i < uint(MARCH_OF_SET.z); i++) {
         uint hit;

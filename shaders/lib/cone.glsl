@@ -63,6 +63,14 @@ float finest_voxel(vec3 position)
     return edge;
 }
 
+// Where cones start, in voxels above their surface: `usual`, but above a thin one beyond all that filtering
+// shows of its back, which would hide from it what it faces.
+float cone_start(float usual, bool thin, vec3 normal)
+{
+    vec3 size = abs(normal);
+    return thin ? max(0.5 + (1.0 + FACE_INSET) * (size.x + size.y + size.z), usual) : usual;
+}
+
 // Filtered light and optical depth across a voxel of a level, for a ray of the given direction.
 vec4 sample_level(uint level, vec3 position, vec3 direction)
 {

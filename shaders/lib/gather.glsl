@@ -34,13 +34,13 @@ gathered no_light()
 }
 
 // `position` is relative to the anchor; `turn` is cosine and sine of a turn about the normal.
-gather_cones begin_gather(vec3 position, vec3 normal, vec2 turn)
+gather_cones begin_gather(vec3 position, vec3 normal, bool thin, vec2 turn)
 {
     gather_cones g;
     mat3 axes = frame_about(normal);
     g.axes = mat3(axes[0] * turn.x + axes[1] * turn.y, axes[1] * turn.x - axes[0] * turn.y, normal);
     float voxel = finest_voxel(position);
-    g.c.origin = position + normal * (MARCH_OF_SET.y * voxel);
+    g.c.origin = position + normal * (cone_start(MARCH_OF_SET.y, thin, normal) * voxel);
     g.c.tangent = MARCH_OF_SET.w;
     g.c.step = MARCH_OF_SET.x;
     g.c.widest = voxels.light.w;

@@ -1,6 +1,6 @@
 // The G-buffer: two uvec4 a pixel.
 //   0: base colour and metallic, specular weight; shading and geometric normal (octahedral)
-//   1: dielectric F0 and roughness; emission (shared exponent); occlusion; shading model
+//   1: dielectric F0 and roughness; emission (shared exponent); thin; occlusion; shading model
 #include "lib/surface.glsl"
 
 layout(std430, binding = BIND_GBUFFER) buffer gbuffer_storage
@@ -18,6 +18,7 @@ uint pixel_index(uvec2 pixel)
 // Three mantissas of 13 bits and a shared exponent of 8, in 32 + 15 bits: all that floats hold, to
 // 1/8191 of the brightest channel. The greatest exponent says that a channel is not finite.
 const int EMISSION_BIAS = 127;
+const uint THIN_BIT = 0x8000u;
 
 uvec2 pack_emission(vec3 emission)
 {
@@ -52,7 +53,8 @@ void gbuffer_store(uvec2 pixel, surface s)
     uvec2 emission = pack_emission(s.emission);
     gbuffer[at + 1u] =
         uvec4(packUnorm2x16(s.f0.rg), packUnorm2x16(vec2(s.f0.b, s.roughness)), emission.x,
-              emission.y | (uint(s.occlusion * 255.0 + 0.5) << 16) | (s.shading << 24));
+              emission.y | (s.thin ? THIN_BIT : 0u) | (uint(s.occlusion * 255.0 + 0.5) << 16) |
+                  (s.shading << 24));
 }
 
 void gbuffer_store_background(uvec2 pixel)
@@ -85,5 +87,6 @@ surface gbuffer_load(uvec2 pixel)
     s.roughness = blue_and_roughness.y;
     s.emission = unpack_emission(second);
     s.occlusion = float((second.w >> 16) & 0xffu) / 255.0;
+    s.thin = (second.w & THIN_BIT) != 0u;
     return s;
 }

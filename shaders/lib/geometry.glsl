@@ -231,6 +231,7 @@ surface load_surface(uint id, sight ray, out layer through)
     s.f0 = min(material.dielectric.x * specular_color, 1.0) * weight;
     s.f90 = (material.info.x & MATERIAL_IOR_ONE) != 0u ? 0.0 : weight;
     s.shading = material.info.x & MATERIAL_SHADING_MASK;
+    s.thin = (material.info.x & MATERIAL_DOUBLE_SIDED) != 0u;
     if (s.shading == SHADE_UNLIT)
         s.emission = s.base_color;
 

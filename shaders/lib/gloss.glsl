@@ -10,13 +10,13 @@ float lobe_tangent(float roughness)
     return max(1.2 * alpha, 0.01);
 }
 
-// Radiance in cd/m^2. `normal` lifts the start off the surface.
-vec3 trace_gloss(vec3 position_world, vec3 normal, vec3 direction, float roughness)
+// Radiance in cd/m^2. `normal` lifts the start off the surface, which may be thin.
+vec3 trace_gloss(vec3 position_world, vec3 normal, bool thin, vec3 direction, float roughness)
 {
     vec3 origin = voxel_position(position_world);
     float voxel = finest_voxel(origin);
     cone c;
-    c.origin = origin + normal * (voxels.pixel_march.y * voxel);
+    c.origin = origin + normal * (cone_start(voxels.pixel_march.y, thin, normal) * voxel);
     c.direction = direction;
     c.tangent = lobe_tangent(roughness);
     c.step = min(voxels.pixel_march.x, 1.0);

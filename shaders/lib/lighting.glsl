@@ -32,19 +32,20 @@ layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 // Share of a light of a size that reaches a point, by a cone towards it; `hard` is what a shadow map
 // says of its middle. Voxels know nothing of what is nearer than they are large, but where penumbrae
 // are narrower than a voxel the map is right anyway.
-float soft_visibility(float hard, vec3 position, vec3 normal, vec3 to_light, float distance_m,
-                      float radius_m)
+float soft_visibility(float hard, surface s, vec3 to_light, float distance_m, float radius_m)
 {
-    vec3 origin = voxel_position(position);
+    vec3 normal = s.geometric_normal;
+    vec3 origin = voxel_position(s.position);
     float voxel = finest_voxel(origin);
+    float start = cone_start(voxels.pixel_march.y, s.thin, normal);
     cone c;
-    c.origin = origin + normal * (voxels.pixel_march.y * voxel);
+    c.origin = origin + normal * (start * voxel);
     c.direction = to_light;
     c.tangent = max(radius_m / max(distance_m, 1e-6), 1e-3);
     c.step = 1.0;
     c.widest = voxels.light.w;
     // Not into the voxels around the light, however wide the cone has become there.
-    c.reach_m = (distance_m - (voxels.pixel_march.y + 2.0) * voxel) / (1.0 + 3.0 * c.tangent);
+    c.reach_m = (distance_m - (start + 2.0) * voxel) / (1.0 + 3.0 * c.tangent);
     cone_light found = trace_cone(c, 1.0);
     float penumbra = radius_m * found.hit_m / max(distance_m - found.hit_m, 1e-6);
     float share = found.transmittance < 0.99 ? smoothstep(1.0, 3.0, penumbra / voxel) : 0.0;
@@ -90,7 +91,7 @@ vec3 punctual_light(surface s, light_block light)
 #if SOFT_SHADOWS
         bool directional = int(light.position.w) == LIGHT_DIRECTIONAL;
         if (light.radiance.w > 0.0 && !directional && light.shadow.x != NO_SHADOW)
-            lit = soft_visibility(lit, s.position, s.geometric_normal, l,
+            lit = soft_visibility(lit, s, l,
                                   length(light.position.xyz - s.position), light.radiance.w);
 #endif
         reflected *= lit;
@@ -213,7 +214,7 @@ vec3 area_light(surface s, area_light_block light)
         // As a disk of the emitter's area, seen at its slant.
         float cosine = abs(dot(light.normal.xyz, to_light));
         if (light.shadow.x != NO_SHADOW)
-            lit = soft_visibility(lit, s.position, s.geometric_normal, to_light,
+            lit = soft_visibility(lit, s, to_light,
                                   length(light.center.xyz - s.position),
                                   sqrt(light.radiance.w * cosine / PI));
 #endif

@@ -14,4 +14,5 @@ struct surface {
     float occlusion;
     vec3 emission; // cd/m^2
     uint shading;  // SHADE_*
+    bool thin;     // seen from both sides, so perhaps without thickness
 };

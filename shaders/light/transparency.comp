@@ -99,7 +99,7 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     vec3 reflected = f0 * scale_bias.x + mix(s.f90, 1.0, s.metallic) * scale_bias.y;
-    sum += reflected * trace_gloss(s.position, s.geometric_normal, mirror, s.roughness);
+    sum += reflected * trace_gloss(s.position, s.geometric_normal, s.thin, mirror, s.roughness);
 #elif ENVIRONMENT
     sum += environment_light(s);
 #endif
@@ -119,7 +119,7 @@ vec3 refracted_light(surface s, layer through)
     // The lobe of transmission narrows as the interface bends less.
     float roughness = s.roughness * clamp(2.0 * (1.0 - ratio), 0.0, 1.0);
     vec3 leaving = s.position + inside * through.thickness_m;
-    return trace_gloss(leaving, -s.geometric_normal * 0.5, normalize(inside), roughness);
+    return trace_gloss(leaving, -s.geometric_normal * 0.5, false, normalize(inside), roughness);
 }
 #endif
 

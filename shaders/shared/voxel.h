@@ -30,7 +30,7 @@
 // shaders/lib/gather.glsl packs them). So long as geometry stays, a cone's light is one look-up.
 #define FACE_WORDS      12u // before the cones
 #define FACE_NORMAL     0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: no surface any more
-#define FACE_PLACE      1u  // mean, within the voxel, 3 x 10 bits
+#define FACE_PLACE      1u  // mean, within the voxel, 3 x 10 bits; FACE_THIN
 #define FACE_LIGHT      2u  // two words: irradiance / pi / scale as 3 halves, openness as a half
 #define FACE_STATE      4u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
 #define FACE_REQUEST    5u  // frame of the newest request
@@ -38,8 +38,9 @@
 #define FACE_ALBEDO     8u  // reflectance, 3 x 10 bits
 #define FACE_CELL       9u  // cell * 8 + face
 #define FACE_SHOWN      10u // two words: light averaged over neighbours, as FACE_LIGHT: what pixels see
-#define FACE_VALID      0x400000u // its light means something
-#define FACE_MARCHED    0x800000u // its cones' hits, too; epoch tells of which geometry
+#define FACE_VALID      0x400000u   // its light means something
+#define FACE_MARCHED    0x800000u   // its cones' hits, too; epoch tells of which geometry
+#define FACE_THIN       0x40000000u // a surface without thickness: its back is in this voxel, too
 #define FACE_CHANGE_BIT 16
 #define FACE_EPOCH_BIT  24
 

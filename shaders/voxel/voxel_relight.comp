@@ -41,6 +41,7 @@ struct side {
     vec3 reflectance;
     vec3 emission;
     float opacity;
+    bool thin; // some of it is the side of a surface without thickness
 };
 
 vec3 signed_sum(uint word)
@@ -98,7 +99,7 @@ float coverage(uint mask, uint axis)
 const float TAP_LIFT = 0.3;
 const float TAP_SPREAD = 0.3;
 
-vec3 direct_irradiance(vec3 position, vec3 normal, float voxel_m)
+vec3 direct_irradiance(vec3 position, vec3 normal, bool thin, float voxel_m)
 {
 #if PUNCTUAL_LIGHTS || AREA_LIGHTS
     surface s;
@@ -113,6 +114,7 @@ vec3 direct_irradiance(vec3 position, vec3 normal, float voxel_m)
     s.occlusion = 1.0;
     s.emission = vec3(0.0);
     s.shading = SHADE_PBR;
+    s.thin = thin;
     mat3 axes = frame_about(normal);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < TAPS; i++) {
@@ -151,6 +153,7 @@ void main()
         sides[i].reflectance = vec3(0.0);
         sides[i].emission = vec3(0.0);
         sides[i].opacity = 0.0;
+        sides[i].thin = false;
     }
     for (uint at = cells[cell * CELL_WORDS + CELL_SURFEL]; at != VOXEL_NONE;
          at = surfels[at * SURFEL_WORDS + SURFEL_NEXT]) {
@@ -160,8 +163,11 @@ void main()
         material_block m = materials[surface_word & SURFACE_MATERIAL_MASK];
         bool directly = (surface_word & SURFACE_LIT_DIRECTLY) != 0u;
         add_surfel(sides[key & 7u], word, m, directly, 1.0);
-        if ((m.info.x & MATERIAL_DOUBLE_SIDED) != 0u)
+        if ((m.info.x & MATERIAL_DOUBLE_SIDED) != 0u) {
             add_surfel(sides[(key & 7u) ^ 1u], word, m, directly, -1.0);
+            sides[key & 7u].thin = true;
+            sides[(key & 7u) ^ 1u].thin = true;
+        }
     }
     face_sums sums = no_face_sums();
     ivec3 voxel = ivec3(corner);
@@ -181,7 +187,8 @@ void main()
         vec3 position = voxels.anchor.xyz + (corner + place) * voxels.levels[level].size.x;
         vec3 albedo = clamp(sides[i].reflectance * inverse, 0.0, 1.0);
         vec3 direct = sides[i].emission * (inverse / voxels.anchor.w) +
-                      albedo * direct_irradiance(position, normal, voxels.levels[level].size.x);
+                      albedo * direct_irradiance(position, normal, sides[i].thin,
+                                                 voxels.levels[level].size.x);
         // In proportion to what is covered: the parts of a slanted wall that lie in neighbouring
         // voxels then add up to a whole one.
         float opacity = min(sides[i].opacity * inverse, 1.0);
@@ -194,7 +201,8 @@ void main()
         uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
         uvec3 packed_albedo = uvec3(albedo * 1023.0 + 0.5);
         faces[words + FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));
-        faces[words + FACE_PLACE] = packed_place.x | (packed_place.y << 10) | (packed_place.z << 20);
+        faces[words + FACE_PLACE] = packed_place.x | (packed_place.y << 10) |
+                                    (packed_place.z << 20) | (sides[i].thin ? FACE_THIN : 0u);
         faces[words + FACE_DIRECT] = packHalf2x16(direct.rg);
         faces[words + FACE_DIRECT + 1u] = packHalf2x16(vec2(direct.b, depth));
         faces[words + FACE_ALBEDO] =
