@@ -69,6 +69,9 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
 {
     const struct render_settings *settings = &params->settings;
     const struct resident_counts *counts = &resident->counts;
+    const struct quality_level *level = &quality_levels[params->quality];
+    bool rays = settings->gather_mode == GATHER_RAYS ||
+                (settings->gather_mode == GATHER_AUTO && level->gather_mode == GATHER_RAYS);
     static const enum effect all[] = {
         EFFECT_INDIRECT_DIFFUSE,  EFFECT_BOUNCE,       EFFECT_INDIRECT_SPECULAR,
         EFFECT_REFRACTION,        EFFECT_SOFT_SHADOWS, EFFECT_AMBIENT_OCCLUSION,
@@ -99,8 +102,7 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
         {EFFECT_REFRACTION, settings->refraction, counts->transmissive_materials > 0,
          "a material transmits light", "no transmissive material in the scene"},
         {EFFECT_SOFT_SHADOWS,
-         settings->soft_shadows && settings->shadows &&
-             quality_levels[params->quality].soft_shadows,
+         settings->soft_shadows && settings->shadows && (level->cone_shadows || rays),
          counts->sized_lights > 0 && counts->lit_materials > 0, "a light has a size",
          counts->lit_materials > 0 ? "no light has a size" : "every surface is unlit"},
         {EFFECT_AMBIENT_OCCLUSION, settings->ambient_occlusion, reflected, "asked for",

@@ -39,7 +39,7 @@ enum effect {
      EFFECT_BIT(EFFECT_CUBE_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES) |                            \
      EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) | EFFECT_BIT(EFFECT_AREA_LIGHTS) |                         \
      EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR) |                                \
-     EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) | EFFECT_BIT(EFFECT_SOFT_SHADOWS))
+     EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE))
 // Effects that need the scene's voxels.
 #define VOXEL_EFFECTS                                                                              \
     (EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) | EFFECT_BIT(EFFECT_INDIRECT_SPECULAR) |                  \

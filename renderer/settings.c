@@ -80,7 +80,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                       .gather_mode = GATHER_RAYS,
                       .ray_step = 1,
                       .ray_pictures = 64,
-                      .soft_shadows = true,
+                      .cone_shadows = true,
                       .specular_roughness = 0.4f},
     [QUALITY_FINAL] = {.resolution_scale = 2.0f,
                        .texture_anisotropy = 8.0f,
@@ -92,7 +92,7 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                        .gather_mode = GATHER_RAYS,
                        .ray_step = 2,
                        .ray_pictures = 64,
-                       .soft_shadows = true,
+                       .cone_shadows = true,
                        .specular_roughness = 1.01f},
 };
 

@@ -132,7 +132,7 @@ struct render_settings {
     uint32_t bounces;          // of indirect light, 1 to GI_MAX_BOUNCES; 0: unlimited
     float indirect_intensity;  // 1 is physical
     bool ambient_occlusion;    // darkens indirect diffuse light by the cones' occlusion
-    bool soft_shadows;         // cones towards lights that have a size
+    bool soft_shadows;         // of lights that have a size
     bool indirect_specular;    // one cone along the reflection
     bool refraction;           // one cone through transmissive surfaces
     bool environment_light;    // cones that leave the scene see the environment
@@ -157,9 +157,9 @@ struct quality_level {
     enum cone_set cone_set;
     float cone_step;
     enum gather_mode gather_mode;
-    uint32_t ray_step;     // where rays gather: every how many-th rendered pixel has them,
-    uint32_t ray_pictures; // and how many pictures of one ray each are averaged
-    bool soft_shadows;
+    uint32_t ray_step;          // where rays gather: every how many-th rendered pixel has them,
+    uint32_t ray_pictures;      // and how many pictures of one ray each are averaged
+    bool cone_shadows;          // soft shadows by cones, where rays do not show them
     float specular_roughness;   // rougher surfaces reflect as if by the cached irradiance
     float specular_reflectance; // and so do those that reflect less than this head-on
 };

@@ -143,9 +143,9 @@ static bool prepare_indirect(struct view *view, const struct frame *frame)
     uint32_t step = gi_gather_step(frame);
     size_t gathered =
         (size_t)((view->width + step - 1) / step) * ((view->height + step - 1) / step);
-    if (gather == GATHER_RAYS)
-        gathered *= effect_bits & EFFECT_BIT(EFFECT_INDIRECT_SPECULAR) ? GATHERED_PICTURES
-                                                                       : GATHERED_WITHOUT_GLOSS;
+    gathered *= gi_gathered_pictures(frame);
+    if (gi_wants_ray_shadows(frame))
+        gathered += (size_t)view->width * view->height;
     if (gather == GATHER_CACHE)
         gpu_buffer_destroy(&view->gathered);
     else

@@ -112,7 +112,7 @@ cJSON *accuracy_quality_table(void)
         cJSON_AddStringToObject(row, "gather_mode", gather_mode_names[level->gather_mode]);
         cJSON_AddNumberToObject(row, "ray_step", level->ray_step);
         cJSON_AddNumberToObject(row, "ray_pictures", level->ray_pictures);
-        cJSON_AddBoolToObject(row, "soft_shadows", level->soft_shadows);
+        cJSON_AddBoolToObject(row, "cone_shadows", level->cone_shadows);
         add_float(row, "specular_roughness", level->specular_roughness);
         add_float(row, "specular_reflectance", level->specular_reflectance);
     }

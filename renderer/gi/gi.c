@@ -1,6 +1,7 @@
 #include "renderer/gi/gi.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "renderer/gi/cones.h"
@@ -307,6 +308,34 @@ uint32_t gi_gather_step(const struct frame *frame)
 {
     enum gather_mode mode = gi_gather_mode(frame);
     return mode == GATHER_HALF ? 2 : mode == GATHER_RAYS ? frame->quality->ray_step : 1;
+}
+
+uint32_t gi_gathered_pictures(const struct frame *frame)
+{
+    if (gi_gather_mode(frame) != GATHER_RAYS)
+        return 1;
+    return frame_has(frame, EFFECT_INDIRECT_SPECULAR) ? GATHERED_PICTURES : GATHERED_WITHOUT_GLOSS;
+}
+
+bool gi_wants_ray_shadows(const struct frame *frame)
+{
+    return frame->volume && gi_gather_mode(frame) == GATHER_RAYS &&
+           frame_has(frame, EFFECT_SOFT_SHADOWS) &&
+           frame->resident->counts.lights <= GI_MOST_LIGHTS_OF_RAYS;
+}
+
+bool gi_traces_shadows(const struct frame *frame)
+{
+    return gi_wants_ray_shadows(frame) && frame->gather == GATHER_RAYS;
+}
+
+void gi_write_shares_defines(const struct frame *frame, char out_defines[GI_SHARES_DEFINES_LENGTH])
+{
+    bool rays = gi_traces_shadows(frame);
+    snprintf(out_defines, GI_SHARES_DEFINES_LENGTH,
+             "RAY_SHADOWS %d\nCONE_SHADOWS %d\nGATHER_STEP %u\nGATHERED_BEFORE_SHARES %u\n", rays,
+             !rays && frame_has_cone_shadows(frame), gi_gather_step(frame),
+             gi_gathered_pictures(frame));
 }
 
 // While light settles for pictures that are dear to draw, a few frames only do that.

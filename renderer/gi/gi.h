@@ -43,6 +43,22 @@ enum gather_mode gi_gather_mode(const struct frame *frame);
 // Every how many-th pixel gathers, in both directions.
 uint32_t gi_gather_step(const struct frame *frame);
 
+// Rays test the lamps of a scene one by one up to so many; what they meet is beyond lit as voxels
+// are, and soft shadows are those of voxels.
+#define GI_MOST_LIGHTS_OF_RAYS 16u
+
+// Pictures of what rays from pixels have found (GATHERED_ of shaders/shared/bindings.h) but for
+// shadows, which have all pixels.
+uint32_t gi_gathered_pictures(const struct frame *frame);
+
+// Whether shadows of lamps that have a size are traced in the end; and in this frame shown.
+bool gi_wants_ray_shadows(const struct frame *frame);
+bool gi_traces_shadows(const struct frame *frame);
+
+// For shaders that write or read what those rays have found.
+#define GI_SHARES_DEFINES_LENGTH 96
+void gi_write_shares_defines(const struct frame *frame, char out_defines[GI_SHARES_DEFINES_LENGTH]);
+
 // Frees volumes that no view has drawn with last.
 void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count);
 

@@ -1,4 +1,7 @@
 // Direct light of punctual lights and planar emitters.
+#include <stdio.h>
+
+#include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
 
@@ -15,9 +18,10 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
 {
     // The first pass to write radiance starts from the emission.
     bool first = environment_pass.skip_reason(frame) != NULL;
-    const char *extra = frame->params->debug_view == DEBUG_VIEW_DIRECT ? "FIRST 2\n"
-                        : first                                        ? "FIRST 1\n"
-                                                                       : "FIRST 0\n";
+    char extra[GI_SHARES_DEFINES_LENGTH + 16], shares[GI_SHARES_DEFINES_LENGTH];
+    gi_write_shares_defines(frame, shares);
+    snprintf(extra, sizeof(extra), "FIRST %d\n%s",
+             frame->params->debug_view == DEBUG_VIEW_DIRECT ? 2 : first, shares);
     const struct gpu_program *program =
         frame->volume ? voxel_program(frame, pass, "light/direct_light.comp", extra, out_error)
                       : pass_program(frame, pass, "light/direct_light.comp", extra, out_error);

@@ -7,11 +7,11 @@
 #include "renderer/view.h"
 
 const struct pass *const all_passes[PASS_COUNT] = {
-    &visibility_pass,        &gbuffer_pass,      &shadow_map_pass,       &voxelize_pass,
-    &voxel_relight_pass,     &voxel_filter_pass, &irradiance_cache_pass, &light_tiles_pass,
-    &environment_pass,       &direct_light_pass, &emission_pass,         &indirect_diffuse_pass,
-    &indirect_specular_pass, &transparency_pass, &reference_pass,        &debug_view_pass,
-    &exposure_pass,          &tonemap_pass,      &readback_pass,
+    &visibility_pass,       &gbuffer_pass,           &shadow_map_pass,       &voxelize_pass,
+    &voxel_relight_pass,    &voxel_filter_pass,      &irradiance_cache_pass, &light_tiles_pass,
+    &environment_pass,      &ray_shadows_pass,       &direct_light_pass,     &emission_pass,
+    &indirect_diffuse_pass, &indirect_specular_pass, &transparency_pass,     &reference_pass,
+    &debug_view_pass,       &exposure_pass,          &tonemap_pass,          &readback_pass,
 };
 
 static const char *const resource_names[RESOURCE_COUNT] = {

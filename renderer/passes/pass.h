@@ -66,6 +66,12 @@ static inline bool frame_has(const struct frame *frame, enum effect effect)
     return (frame->plan.bits & EFFECT_BIT(effect)) != 0;
 }
 
+// Whether cones towards lamps that have a size tell their shadows.
+static inline bool frame_has_cone_shadows(const struct frame *frame)
+{
+    return frame->volume && frame_has(frame, EFFECT_SOFT_SHADOWS) && frame->quality->cone_shadows;
+}
+
 // Whether pixels are lit directly: other debug views show something else.
 static inline bool frame_lights_pixels(const struct frame *frame)
 {
@@ -102,11 +108,11 @@ struct pass {
 
 extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, voxelize_pass,
     voxel_relight_pass, voxel_filter_pass, irradiance_cache_pass, light_tiles_pass,
-    environment_pass, direct_light_pass, emission_pass, indirect_diffuse_pass,
+    environment_pass, ray_shadows_pass, direct_light_pass, emission_pass, indirect_diffuse_pass,
     indirect_specular_pass, transparency_pass, reference_pass, debug_view_pass, exposure_pass,
     tonemap_pass, readback_pass;
 
-#define PASS_COUNT 19
+#define PASS_COUNT 20
 extern const struct pass *const all_passes[PASS_COUNT];
 
 // Runs the passes that are needed, in order, timing each. False with a message if one fails.

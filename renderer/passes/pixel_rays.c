@@ -6,25 +6,20 @@
 #include "renderer/passes/pass.h"
 #include "renderer/resident/resident.h"
 
-// What rays meet is lit by each lamp up to so many; beyond, as the voxels are.
-#define MOST_LIGHTS_OF_HITS 16u
-
-// Effects that what a ray meets is shaded by. Lamps' sizes and tiles of the screen mean nothing
-// there.
+// Effects that what a ray meets is shaded by. Tiles of the screen mean nothing there.
 static const struct pass shading_of_hits = {
     .effects_used = (SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ALPHA_MASK) |
                      EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                      EFFECT_BIT(EFFECT_BOUNCE)) &
-                    ~(EFFECT_BIT(EFFECT_SOFT_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES)),
+                    ~EFFECT_BIT(EFFECT_LIGHT_TILES),
 };
 
 const struct gpu_program *hit_program(const struct frame *frame, const char *shader,
                                       struct error *out_error)
 {
     char extra[128];
-    snprintf(extra, sizeof(extra),
-             "GATHER_STEP %u\nSOFT_SHADOWS 0\nLIGHT_TILES 0\nSHADOW_TAPS 1u\nLIT_HITS %d\n",
-             gi_gather_step(frame), frame->resident->counts.lights <= MOST_LIGHTS_OF_HITS);
+    snprintf(extra, sizeof(extra), "GATHER_STEP %u\nLIGHT_TILES 0\nSHADOW_TAPS 1u\nLIT_HITS %d\n",
+             gi_gather_step(frame), frame->resident->counts.lights <= GI_MOST_LIGHTS_OF_RAYS);
     return voxel_program(frame, &shading_of_hits, shader, extra, out_error);
 }
 

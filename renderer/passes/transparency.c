@@ -1,4 +1,5 @@
 // Blended and transmissive layers, per pixel in order of depth.
+#include <stdio.h>
 #include <string.h>
 
 #include "renderer/passes/pass.h"
@@ -21,9 +22,11 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
         frame, pass, "visibility/visibility", "ALPHA_MASK 0\nSHADOW_VIEW 0\nLIST 1\n", out_error);
     const struct gpu_program *tiles =
         list ? pass_program(frame, pass, "light/transparent_tiles.comp", "", out_error) : NULL;
+    char extra[32];
+    snprintf(extra, sizeof(extra), "CONE_SHADOWS %d\n", frame_has_cone_shadows(frame));
     const struct gpu_program *shade =
         !tiles          ? NULL
-        : frame->volume ? voxel_program(frame, pass, "light/transparency.comp", "", out_error)
+        : frame->volume ? voxel_program(frame, pass, "light/transparency.comp", extra, out_error)
                         : pass_program(frame, pass, "light/transparency.comp", "", out_error);
     if (!shade)
         return false;

@@ -17,10 +17,9 @@ static bool voxel_relight_run(struct frame *frame, const struct pass *pass, stru
     struct voxel_volume *volume = frame->volume;
     bool feeds = frame_has(frame, EFFECT_BOUNCE) && volume->light.feeds;
     char extra[128];
-    snprintf(
-        extra, sizeof(extra),
-        "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nSOFT_SHADOWS 0\nTAPS 4\nFEEDBACK %d\nFRESH %d\n",
-        feeds, frame->light_work.fresh_only);
+    snprintf(extra, sizeof(extra),
+             "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nTAPS 4\nFEEDBACK %d\nFRESH %d\n", feeds,
+             frame->light_work.fresh_only);
     const struct gpu_program *program = voxel_program(
         frame, pass,
         frame->light_work.direct ? "voxel/voxel_relight.comp" : "voxel/voxel_bounce.comp", extra,

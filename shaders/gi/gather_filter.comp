@@ -1,35 +1,14 @@
 // Averages what rays from pixels have found over the neighbours that lie on the same surface. In:
 // G-buffer, sums. Out: means. GLOSS 0: irradiance; 1: what lobes mirror, where smooth surfaces keep their
 // own.
-//
-// A window of 5x5 whose rim counts half holds each place of an interleaved square of 4x4 once, so that
-// on a plane the noise of single pixels cancels.
 #include "lib/gbuffer.glsl"
 #include "lib/gathered.glsl"
 #include "lib/gloss_rule.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-// Neighbours off a surface's plane by a pixel's width at its distance hardly count.
-const float PLANE_PIXELS = 1.0;
 // From the first roughness on neighbours mirror something else, from the second about the same.
 const vec2 FILTERED_ROUGHNESS = vec2(0.1, 0.4);
-
-bool has_gathered(surface s)
-{
-    return s.shading < SHADE_UNLIT && (GLOSS == 0 || deserves_cone(s));
-}
-
-// Weight of a neighbour; `pixel_m`: distance between gathering pixels.
-float likeness(surface s, surface n, float pixel_m)
-{
-    float off = dot(n.position - s.position, s.geometric_normal) / (PLANE_PIXELS * pixel_m);
-    float cosine = max(dot(n.normal, s.normal), 0.0);
-    float cosine8 = cosine * cosine;
-    cosine8 *= cosine8;
-    cosine8 *= cosine8;
-    return has_gathered(n) ? exp(-off * off) * cosine8 : 0.0;
-}
 
 void main()
 {
@@ -54,9 +33,8 @@ void main()
                 any(greaterThanEqual(other, size)))
                 continue;
             surface n = gbuffer_load(uvec2(other * GATHER_STEP));
-            float w = others * likeness(s, n, pixel_m) * (abs(x) == 2 ? 0.5 : 1.0) *
-                      (abs(y) == 2 ? 0.5 : 1.0);
-            if (w <= 0.0)
+            float w = others * likeness(s, n, pixel_m) * window_weight(x, y);
+            if (w <= 0.0 || (GLOSS != 0 && !deserves_cone(n)))
                 continue;
             sum += w * gathered_light[gathered_at(FROM, uvec2(other))];
             weight += w;

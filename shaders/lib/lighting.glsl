@@ -28,7 +28,10 @@ layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 };
 #endif
 
-#if SOFT_SHADOWS
+#if RAY_SHADOWS
+// Share of the light of lamps that have a size that arrives, by rays; whoever asks for direct light says.
+vec3 seen_share = vec3(1.0);
+#elif CONE_SHADOWS
 // Share of a light of a size that reaches a point, by a cone towards it; `hard` is what a shadow map
 // says of its middle. Voxels know nothing of what is nearer than they are large, but where penumbrae
 // are narrower than a voxel the map is right anyway.
@@ -66,9 +69,10 @@ float distance_attenuation(float squared, float range_m)
     return attenuation;
 }
 
-vec3 punctual_light(surface s, light_block light)
+// What a lamp would send by the surface to the viewer if nothing stood between; `l` is the way to it.
+vec3 punctual_unshadowed(surface s, light_block light, out vec3 l)
 {
-    vec3 l = -light.direction.xyz;
+    l = -light.direction.xyz;
     float strength = 1.0;
     if (int(light.position.w) != LIGHT_DIRECTIONAL) {
         vec3 to_light = light.position.xyz - s.position;
@@ -83,19 +87,33 @@ vec3 punctual_light(surface s, light_block light)
     }
     if (strength <= 0.0 || dot(s.normal, l) <= 0.0 || dot(s.geometric_normal, l) <= 0.0)
         return vec3(0.0);
-    vec3 reflected = brdf_cosine(s, l) * light.radiance.rgb * strength;
+    return brdf_cosine(s, l) * light.radiance.rgb * strength;
+}
+
+// Whether its shadows are soft.
+bool has_size(light_block light)
+{
+    return light.radiance.w > 0.0 && int(light.position.w) != LIGHT_DIRECTIONAL &&
+           light.shadow.x != NO_SHADOW;
+}
+
+vec3 punctual_light(surface s, light_block light)
+{
+    vec3 l;
+    vec3 reflected = punctual_unshadowed(s, light, l);
 #if SHADOWS
-    if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0) {
-        float lit = shadow_visibility(light.shadow, light.position.xyz, s.position,
-                                      s.geometric_normal, l);
-#if SOFT_SHADOWS
-        bool directional = int(light.position.w) == LIGHT_DIRECTIONAL;
-        if (light.radiance.w > 0.0 && !directional && light.shadow.x != NO_SHADOW)
-            lit = soft_visibility(lit, s, l,
-                                  length(light.position.xyz - s.position), light.radiance.w);
+    if (max(reflected.r, max(reflected.g, reflected.b)) <= 0.0)
+        return vec3(0.0);
+#if RAY_SHADOWS
+    if (has_size(light))
+        return reflected * seen_share;
 #endif
-        reflected *= lit;
-    }
+    float lit = shadow_visibility(light.shadow, light.position.xyz, s.position, s.geometric_normal, l);
+#if CONE_SHADOWS
+    if (has_size(light))
+        lit = soft_visibility(lit, s, l, length(light.position.xyz - s.position), light.radiance.w);
+#endif
+    reflected *= lit;
 #endif
     return reflected;
 }
@@ -182,7 +200,7 @@ vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reve
 
 #endif
 
-vec3 area_light(surface s, area_light_block light)
+vec3 area_unshadowed(surface s, area_light_block light)
 {
 #if VOXEL_LIGHT
     // Cones gather the light of large emitters.
@@ -206,20 +224,30 @@ vec3 area_light(surface s, area_light_block light)
 #if SPECULAR
     reflected += area_specular(s, light, corners, reversed);
 #endif
+    return reflected;
+}
+
+vec3 area_light(surface s, area_light_block light)
+{
+    vec3 reflected = area_unshadowed(s, light);
 #if SHADOWS
-    if (max(reflected.r, max(reflected.g, reflected.b)) > 0.0) {
-        float lit = shadow_visibility(light.shadow, light.center.xyz, s.position,
-                                      s.geometric_normal, to_light);
-#if SOFT_SHADOWS
-        // As a disk of the emitter's area, seen at its slant.
-        float cosine = abs(dot(light.normal.xyz, to_light));
-        if (light.shadow.x != NO_SHADOW)
-            lit = soft_visibility(lit, s, to_light,
-                                  length(light.center.xyz - s.position),
-                                  sqrt(light.radiance.w * cosine / PI));
+    if (max(reflected.r, max(reflected.g, reflected.b)) <= 0.0)
+        return vec3(0.0);
+#if RAY_SHADOWS
+    if (light.shadow.x != NO_SHADOW)
+        return reflected * seen_share;
 #endif
-        reflected *= lit;
-    }
+    vec3 to_light = safe_normalize(light.center.xyz - s.position, s.normal);
+    float lit = shadow_visibility(light.shadow, light.center.xyz, s.position, s.geometric_normal,
+                                  to_light);
+#if CONE_SHADOWS
+    // As a disk of the emitter's area, seen at its slant.
+    float cosine = abs(dot(light.normal.xyz, to_light));
+    if (light.shadow.x != NO_SHADOW)
+        lit = soft_visibility(lit, s, to_light, length(light.center.xyz - s.position),
+                              sqrt(light.radiance.w * cosine / PI));
+#endif
+    reflected *= lit;
 #endif
     return reflected;
 }

@@ -1,9 +1,10 @@
-// Direct light of punctual lights and planar emitters. In: G-buffer, lights, shadow maps. Out:
-// radiance in cd/m^2, added to what the environment pass wrote (FIRST 0), to the emission (1), or
-// by itself (2: the debug view of direct light).
+// Direct light of punctual lights and planar emitters. In: G-buffer, lights, shadow maps; RAY_SHADOWS: what
+// rays have found to arrive from lamps that have a size. Out: radiance in cd/m^2, added to what the
+// environment pass wrote (FIRST 0), to the emission (1), or by itself (2: the debug view of direct light).
 #include "lib/gbuffer.glsl"
 #include "lib/lighting.glsl"
 #include "lib/radiance.glsl"
+#include "lib/seen_share.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -20,7 +21,11 @@ void main()
 #else
     vec3 sum = radiance[pixel_index(pixel)].rgb;
 #endif
-    if (s.shading < SHADE_UNLIT)
+    if (s.shading < SHADE_UNLIT) {
+#if RAY_SHADOWS
+        seen_share = seen_share_of(s, pixel);
+#endif
         sum += direct_light(s, pixel);
+    }
     radiance[pixel_index(pixel)] = vec4(sum, 1.0);
 }

@@ -246,6 +246,27 @@ struct scene *gi_table_scene(void)
     return scene;
 }
 
+struct scene *gi_penumbra_scene(bool sheet, float radius_m)
+{
+    struct scene *scene = create("penumbra");
+    uint32_t plaster = add_matte(scene, GRAY(0.7f), 0.0f);
+    struct mesh_builder builder;
+    mesh_builder_init(&builder);
+    mesh_builder_add_box(&builder, (const float[3]){-2.0f, -0.1f, -2.0f},
+                         (const float[3]){2.0f, 0.0f, 2.0f}, BOX_ALL);
+    if (sheet)
+        mesh_builder_add_box(&builder, (const float[3]){-2.0f, 1.0f, -2.0f},
+                             (const float[3]){0.0f, 1.002f, 2.0f}, BOX_ALL);
+    add_object(scene, &builder, plaster, 0.0f);
+    add_lamp(scene, (const float[3]){0.0f, 2.0f, 0.0f}, 10.0f);
+    scene->lights[0].radius_m = radius_m;
+    uint32_t camera =
+        scene_add_camera(scene, "camera", (const float[3]){0.0f, 0.8f, 0.0f},
+                         (const float[3]){0.0f, 0.0f, 0.0f}, (float[3]){0.0f, 0.0f, -1.0f}, 1.0f);
+    assert_int_not_equal(camera, SCENE_NONE);
+    return scene;
+}
+
 static void rooms_wall(const struct gi_rooms_params *params, float out_low[3], float out_high[3])
 {
     float e = GI_ROOMS_HALF_EXTENT_M;

@@ -42,6 +42,10 @@ struct scene *gi_metal_floor_scene(void);
 // what the mirror shows, lie between voxels.
 struct scene *gi_table_scene(void);
 
+// A floor under a lamp of a radius at a height of 2 m; `sheet`: half of it covered at half the
+// height, where x < 0. Seen from above, below the sheet.
+struct scene *gi_penumbra_scene(bool sheet, float radius_m);
+
 // Two closed rooms with a wall between them; a lamp in the first.
 struct gi_rooms_params {
     float wall_m;   // thickness of the wall

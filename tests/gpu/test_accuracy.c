@@ -210,7 +210,7 @@ static void test_quality_table(void **state)
         assert_int_equal(at(row, "shadow_taps")->valuedouble, level->shadow_taps);
         assert_string_equal(at(row, "gather_mode")->valuestring,
                             gather_mode_names[level->gather_mode]);
-        assert_true(cJSON_IsTrue(at(row, "soft_shadows")) == level->soft_shadows);
+        assert_true(cJSON_IsTrue(at(row, "cone_shadows")) == level->cone_shadows);
     }
     cJSON_Delete(table);
 }

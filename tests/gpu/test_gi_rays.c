@@ -1,5 +1,6 @@
 // Proves that pictures gathered by rays show what lies between voxels: light under a low table, and
-// a room in a mirror, against the reference path tracer, where those gathered from voxels do not.
+// a room in a mirror, against the reference path tracer, where those gathered from voxels do not;
+// and the shadows of lamps that have a size.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "renderer/scene/scene_load.h"
 #include "support_gi.h"
 #include "support_gi_scenes.h"
 
@@ -130,11 +132,113 @@ static void test_pictures_in_motion_show_the_cache(void **state)
     scene_destroy(&scene);
 }
 
+#define LAMP_RADIUS_M 0.2
+
+// Share of a disk that a straight edge leaves, which lies so many radii from its middle.
+static double disk_share(double edge)
+{
+    double t = fmax(fmin(edge, 1.0), -1.0);
+    return 0.5 + (t * sqrt(1.0 - t * t) + asin(t)) / 3.14159265358979;
+}
+
+// The edge of the sheet hides from a place x of the floor what of the lamp lies at less than -x.
+static void test_ball_lamps_have_their_penumbra(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    static const enum quality qualities[] = {QUALITY_INTERACTIVE, QUALITY_HIGH, QUALITY_FINAL};
+    for (int q = 0; q < 3; q++) {
+        struct test_picture pictures[2];
+        for (int sheet = 0; sheet < 2; sheet++) {
+            struct scene *scene = gi_penumbra_scene(sheet, sheet ? (float)LAMP_RADIUS_M : 0.0f);
+            struct frame_params params = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_CLIPMAP);
+            params.quality = qualities[q];
+            params.settings.soft_shadows = true;
+            params.settings.gather_mode = GATHER_RAYS;
+            params.debug_view = DEBUG_VIEW_DIRECT;
+            gi_scene_camera(scene, &params.camera);
+            pictures[sheet] = gi_draw(scene, &params);
+            scene_destroy(&scene);
+        }
+        double worst = 0.0, half_extent_m = 0.8 * tan(0.5);
+        for (uint32_t x = 0; x < PICTURE_EDGE; x++) {
+            double sums[2] = {0.0, 0.0};
+            for (uint32_t y = PICTURE_EDGE * 3 / 8; y < PICTURE_EDGE * 5 / 8; y++)
+                for (int i = 0; i < 2; i++)
+                    sums[i] += (double)pictures[i].pixels[(y * PICTURE_EDGE + x) * 4];
+            double place_m = ((x + 0.5) / PICTURE_EDGE * 2.0 - 1.0) * half_extent_m;
+            double expected = disk_share(place_m / LAMP_RADIUS_M);
+            worst = fmax(worst, fabs(sums[1] / sums[0] - expected));
+        }
+        gi_check(&report, worst <= 0.05, "%s: a penumbra is off by %.3f of the light",
+                 quality_names[qualities[q]], worst);
+        gi_picture_finish(&pictures[0]);
+        gi_picture_finish(&pictures[1]);
+    }
+    gi_report_finish(&report);
+}
+
+// Off what shows the lamp itself.
+static double shadow_error(const float *a, const float *truth)
+{
+    const uint32_t blocks = PICTURE_EDGE / BLOCK_EDGE;
+    const double brightest = 2.0 * BLOCK_EDGE * BLOCK_EDGE; // walls have less, cd/m^2
+    double squared = 0.0, sum = 0.0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < blocks * blocks; i++) {
+        double expected = block_sum(truth, i, 1);
+        if (expected > brightest)
+            continue;
+        squared += pow(block_sum(a, i, 1) - expected, 2.0);
+        sum += expected;
+        count++;
+    }
+    return sqrt(squared * count) / sum;
+}
+
+static void test_planar_lamps_have_their_penumbra(void **state)
+{
+    (void)state;
+    struct error error = {""};
+    struct scene *scene = scene_load("builtin:cornell", &error);
+    assert_non_null(scene);
+    struct frame_params params = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_CLIPMAP);
+    params.quality = QUALITY_HIGH;
+    params.debug_view = DEBUG_VIEW_DIRECT;
+    params.settings.gather_mode = GATHER_RAYS;
+    gi_scene_camera(scene, &params.camera);
+    struct path_params path = {.scene = scene,
+                               .camera = params.camera,
+                               .width = PICTURE_EDGE,
+                               .height = PICTURE_EDGE,
+                               .samples = SAMPLES,
+                               .bounces = 0,
+                               .seed = 5,
+                               .pixel_center = true};
+    struct path_picture traced;
+    assert_true(path_trace(&path, &traced));
+    struct test_picture hard = gi_draw(scene, &params);
+    params.settings.soft_shadows = true;
+    struct test_picture soft = gi_draw(scene, &params);
+    double by_maps = shadow_error(hard.pixels, traced.direct);
+    double by_rays = shadow_error(soft.pixels, traced.direct);
+    struct gi_report report = {0};
+    gi_check(&report, by_rays <= 0.02, "rays err by %.3f of the mean", by_rays);
+    gi_check(&report, by_maps >= 3.0 * by_rays, "shadows of the lamp's middle by %.3f", by_maps);
+    gi_picture_finish(&hard);
+    gi_picture_finish(&soft);
+    path_picture_finish(&traced);
+    scene_destroy(&scene);
+    gi_report_finish(&report);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rays_find_what_voxels_do_not),
         cmocka_unit_test(test_pictures_in_motion_show_the_cache),
+        cmocka_unit_test(test_ball_lamps_have_their_penumbra),
+        cmocka_unit_test(test_planar_lamps_have_their_penumbra),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);
 }

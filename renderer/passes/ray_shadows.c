@@ -1,0 +1,40 @@
+// Shadows of lamps that have a size, by rays from pixels; while rays are too few, voxels show them.
+#include "renderer/gi/gi.h"
+#include "renderer/passes/pass.h"
+#include "renderer/view.h"
+
+static const char *ray_shadows_skip_reason(const struct frame *frame)
+{
+    if (!frame->volume || !frame_has(frame, EFFECT_SOFT_SHADOWS))
+        return frame->view->last_plan.reasons[EFFECT_SOFT_SHADOWS];
+    if (!frame_lights_pixels(frame))
+        return "the debug view shows no light";
+    if (!gi_traces_shadows(frame))
+        return "voxels show soft shadows";
+    return frame->gather_now ? NULL : "rays are enough";
+}
+
+static bool ray_shadows_run(struct frame *frame, const struct pass *pass, struct error *out_error)
+{
+    char extra[GI_SHARES_DEFINES_LENGTH];
+    gi_write_shares_defines(frame, extra);
+    const struct gpu_program *program =
+        voxel_program(frame, pass, "gi/ray_shadows.comp", extra, out_error);
+    if (!program)
+        return false;
+    uint32_t pixels = gi_gather_step(frame) * GROUP_EDGE;
+    gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
+                 (frame->height + pixels - 1) / pixels, 1);
+    return true;
+}
+
+const struct pass ray_shadows_pass = {
+    .name = "ray_shadows",
+    .effects_used =
+        (DIRECT_LIGHT_EFFECTS & ~EFFECT_BIT(EFFECT_LIGHT_TILES)) | EFFECT_BIT(EFFECT_ALPHA_MASK),
+    .gathers = true,
+    .use_count = 2,
+    .uses = {{RESOURCE_GBUFFER, ACCESS_READ}, {RESOURCE_DEPTH, ACCESS_READ}},
+    .skip_reason = ray_shadows_skip_reason,
+    .run = ray_shadows_run,
+};

@@ -1,0 +1,36 @@
+// What gi/ray_shadows.comp has found for pixels, averaged over neighbours on the same surface.
+#include "lib/gbuffer.glsl"
+#include "lib/gathered.glsl"
+
+#if RAY_SHADOWS
+// Neighbours beyond the edge of a shadow differ by more than twice what so few rays have by chance, whose
+// variance is at most 1/4 over their number.
+float same_shadow(vec4 a, vec4 b)
+{
+    vec3 difference = abs(a.rgb / a.a - b.rgb / b.a);
+    float most = max(difference.r, max(difference.g, difference.b));
+    return exp(-most * most / (1.0 / a.a + 1.0 / b.a));
+}
+
+// Share of the light of lamps that have a size that arrives at a pixel. Sums are of rays: a mean of each
+// neighbour counts as much as its rays are many.
+vec3 seen_share_of(surface s, uvec2 pixel)
+{
+    vec4 own = gathered_light[shares_at(pixel)];
+    vec4 sum = own;
+    float pixel_m = gathered_pixel_m(s) / float(GATHER_STEP);
+    for (int y = -2; y <= 2; y++)
+        for (int x = -2; x <= 2; x++) {
+            ivec2 other = ivec2(pixel) + ivec2(x, y);
+            if ((x == 0 && y == 0) || any(lessThan(other, ivec2(0))) ||
+                any(greaterThanEqual(other, ivec2(frame.size.xy))))
+                continue;
+            vec4 value = gathered_light[shares_at(uvec2(other))];
+            if (value.a == 0.0)
+                continue;
+            float w = likeness(s, gbuffer_load(uvec2(other)), pixel_m) * window_weight(x, y);
+            sum += (own.a > 0.0 ? w * same_shadow(own, value) : w) * value;
+        }
+    return sum.a > 0.0 ? sum.rgb / sum.a : vec3(1.0);
+}
+#endif
