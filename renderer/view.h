@@ -70,7 +70,7 @@ struct view {
     uint32_t still_count;        // pictures in that sum
     uint64_t shown_light;        // version of the light in voxels that the newest picture shows
     uint32_t quiet_count;        // frames since then
-    uint64_t gathered_key;       // of the light and the cones that they saw
+    uint64_t gathered_key; // of the light, of the cones that saw it, and of what was asked for
     struct gpu_buffer
         *glossy_tiles; // arguments and numbers of tiles that reflections are traced in
 

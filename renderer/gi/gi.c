@@ -446,6 +446,9 @@ bool gi_plan_gathering(struct frame *frame, struct error *out_error)
         uint64_t key = hash_vector(volume->light.version, block->pixel_march);
         key = hash_word(key, view->volume_serial);
         key = hash_word(key, (uint64_t)frame->gather);
+        // Of what nobody asked for nothing has been gathered.
+        key = hash_word(key, frame->plan.bits);
+        key = hash_word(key, (uint64_t)frame->params->debug_view);
         if (frame->visibility_changed || frame->light_work.voxelize || key != view->gathered_key)
             view->still_count = 0;
         view->gathered_key = key;

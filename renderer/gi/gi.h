@@ -43,8 +43,8 @@ enum gather_mode gi_gather_mode(const struct frame *frame);
 // Every how many-th pixel gathers, in both directions.
 uint32_t gi_gather_step(const struct frame *frame);
 
-// Rays test the lamps of a scene one by one up to so many; what they meet is beyond lit as voxels
-// are, and soft shadows are those of voxels.
+// Rays ask each lamp of a scene, up to so many. Where there are more, what they meet is lit as
+// voxels are, and soft shadows are left to cones.
 #define GI_MOST_LIGHTS_OF_RAYS 16u
 
 // Pictures of what rays from pixels have found (GATHERED_ of shaders/shared/bindings.h) but for

@@ -1,4 +1,4 @@
-// Shadows of lamps that have a size, by rays from pixels; while rays are too few, voxels show them.
+// Shadows of lamps that have a size, by rays from pixels; without them cones or the map tell.
 #include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
@@ -10,7 +10,7 @@ static const char *ray_shadows_skip_reason(const struct frame *frame)
     if (!frame_lights_pixels(frame))
         return "the debug view shows no light";
     if (!gi_traces_shadows(frame))
-        return "voxels show soft shadows";
+        return "rays do not gather yet, or lamps are too many for them";
     return frame->gather_now ? NULL : "rays are enough";
 }
 

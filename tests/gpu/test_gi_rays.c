@@ -232,6 +232,39 @@ static void test_planar_lamps_have_their_penumbra(void **state)
     gi_report_finish(&report);
 }
 
+// What rays have found is good only for what they were asked for: another debug view or another
+// effect in the same view starts them anew.
+static void test_rays_start_anew_where_more_is_asked(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    struct scene *scene = gi_penumbra_scene(true, (float)LAMP_RADIUS_M);
+    struct frame_params wanted = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_CLIPMAP);
+    wanted.settings.soft_shadows = true;
+    wanted.settings.gather_mode = GATHER_RAYS;
+    gi_scene_camera(scene, &wanted.camera);
+    struct test_picture fresh = gi_draw(scene, &wanted);
+    for (int i = 0; i < 2; i++) {
+        struct frame_params before = wanted;
+        if (i == 0)
+            before.debug_view = DEBUG_VIEW_ALBEDO;
+        else
+            before.settings.soft_shadows = false;
+        struct view *view = gi_show(scene);
+        struct test_picture other = gi_draw_in(view, &before);
+        struct test_picture later = gi_draw_in(view, &wanted);
+        gi_hide(&view);
+        double error = relative_error(later.pixels, fresh.pixels);
+        gi_check(&report, error <= 0.005, "after %s the picture differs by %.4f of the mean",
+                 i == 0 ? "another debug view" : "hard shadows", error);
+        gi_picture_finish(&other);
+        gi_picture_finish(&later);
+    }
+    gi_picture_finish(&fresh);
+    scene_destroy(&scene);
+    gi_report_finish(&report);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -239,6 +272,7 @@ int main(void)
         cmocka_unit_test(test_pictures_in_motion_show_the_cache),
         cmocka_unit_test(test_ball_lamps_have_their_penumbra),
         cmocka_unit_test(test_planar_lamps_have_their_penumbra),
+        cmocka_unit_test(test_rays_start_anew_where_more_is_asked),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);
 }
