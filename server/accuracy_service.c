@@ -270,16 +270,23 @@ static void *run(void *user)
     return NULL;
 }
 
+void accuracy_service_stop(struct accuracy_service *service)
+{
+    pthread_mutex_lock(&service->mutex);
+    service->stop = true;
+    pthread_cond_broadcast(&service->changed);
+    for (struct accuracy_session *session = service->sessions; session; session = session->next)
+        accuracy_session_remove_files(session);
+    pthread_mutex_unlock(&service->mutex);
+}
+
 void accuracy_service_destroy(struct accuracy_service **service_slot)
 {
     struct accuracy_service *service = *service_slot;
     *service_slot = NULL;
     if (!service)
         return;
-    pthread_mutex_lock(&service->mutex);
-    service->stop = true;
-    pthread_cond_broadcast(&service->changed);
-    pthread_mutex_unlock(&service->mutex);
+    accuracy_service_stop(service);
     if (service->started)
         pthread_join(service->thread, NULL);
     while (service->sessions) {

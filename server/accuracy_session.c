@@ -92,16 +92,22 @@ static int remove_entry(const char *path, const struct stat *status, int kind, s
     return remove(path);
 }
 
+void accuracy_session_remove_files(const struct accuracy_session *session)
+{
+    if (session->folder[0] &&
+        nftw(session->folder, remove_entry, MAX_OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS) != 0 &&
+        errno != ENOENT)
+        log_write(LOG_WARN, "accuracy_files_left folder=\"%s\" reason=\"%s\"", session->folder,
+                  strerror(errno));
+}
+
 void accuracy_session_destroy(struct accuracy_session **session_slot)
 {
     struct accuracy_session *session = *session_slot;
     *session_slot = NULL;
     if (!session)
         return;
-    if (session->folder[0] &&
-        nftw(session->folder, remove_entry, MAX_OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS) != 0)
-        log_write(LOG_WARN, "accuracy_files_left folder=\"%s\" reason=\"%s\"", session->folder,
-                  strerror(errno));
+    accuracy_session_remove_files(session);
     scene_destroy(&session->scene);
     free(session);
 }

@@ -46,6 +46,8 @@ struct accuracy_session {
 struct accuracy_session *accuracy_session_create(const struct accuracy_request *request,
                                                  struct error *out_error);
 
+void accuracy_session_remove_files(const struct accuracy_session *session);
+
 // Removes the files, too.
 void accuracy_session_destroy(struct accuracy_session **session);
 

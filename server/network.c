@@ -1,16 +1,19 @@
 #include "server/network.h"
 
+#include <arpa/inet.h>
 #include <assert.h>
-
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "server/clock.h"
 #include "server/network_internal.h"
 
 #define SERVICE_BUFFER_BYTES (256u << 10)
 #define RECEIVE_BYTES        4096u
-#define DRAIN_US             1000000u
+#define DRAIN_US             400000u
 
 static const struct lws_protocols protocols[] = {
     {.name = "http", .callback = network_http_callback, .rx_buffer_size = RECEIVE_BYTES},
@@ -33,6 +36,55 @@ static void log_library(int level, const char *line)
 
 static_assert(LWS_PRE <= FRAME_STREAM_PREFIX_BYTES, "frames leave room for the library's header");
 
+// Why an address and port cannot be bound, as errno tells; 0 if they can, or the address is the
+// name of an interface.
+static int find_bind_error(const char *address, uint32_t port)
+{
+    struct sockaddr_in ipv4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
+    struct sockaddr_in6 ipv6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port)};
+    bool is_ipv4 = inet_pton(AF_INET, address, &ipv4.sin_addr) == 1;
+    if (!is_ipv4 && inet_pton(AF_INET6, address, &ipv6.sin6_addr) != 1)
+        return 0;
+    int fd = socket(is_ipv4 ? AF_INET : AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (fd < 0)
+        return errno;
+    setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &(int){1}, sizeof(int));
+    int status = is_ipv4 ? bind(fd, (const struct sockaddr *)&ipv4, sizeof(ipv4))
+                         : bind(fd, (const struct sockaddr *)&ipv6, sizeof(ipv6));
+    int reason = status == 0 && listen(fd, 1) == 0 ? 0 : errno;
+    close(fd);
+    return reason;
+}
+
+static void explain_bind(const struct network_params *params, struct error *out_error)
+{
+    switch (find_bind_error(params->listen, params->port)) {
+    case EADDRINUSE:
+        error_set(
+            out_error,
+            "port %u of %.100s is in use by another program; --port N takes another, --port 0 "
+            "a free one",
+            params->port, params->listen);
+        break;
+    case EADDRNOTAVAIL:
+        error_set(out_error,
+                  "listen is %.100s; allowed are addresses of this machine, such as "
+                  "127.0.0.1 or 0.0.0.0 (all)",
+                  params->listen);
+        break;
+    case EACCES:
+        error_set(out_error,
+                  "port %u is not allowed for this user; --port N takes another, from 1024 on",
+                  params->port);
+        break;
+    default:
+        error_set(
+            out_error,
+            "cannot listen on %.100s port %u: want a free port and an address of this machine",
+            params->listen, params->port);
+    }
+}
+
 struct network *network_create(const struct network_params *params, struct error *out_error)
 {
     struct network *network = calloc(1, sizeof(*network));
@@ -43,7 +95,7 @@ struct network *network_create(const struct network_params *params, struct error
     network->params = *params;
     if (params->web_dir[0] && !realpath(params->web_dir, network->web_root))
         log_write(LOG_WARN, "web_client_missing folder=\"%s\"", params->web_dir);
-    lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
+    lws_set_log_level(0, log_library); // what goes wrong while it starts is explained below
     // With IPv6 enabled the library takes an IPv4 address for the whole machine.
     bool ipv4 = !strchr(params->listen, ':');
     struct lws_context_creation_info info = {
@@ -62,12 +114,10 @@ struct network *network_create(const struct network_params *params, struct error
     network->context = lws_create_context(&info);
     network->vhost = network->context ? lws_create_vhost(network->context, &info) : NULL;
     if (!network->vhost || lws_get_vhost_listen_port(network->vhost) <= 0) {
-        error_set(
-            out_error,
-            "cannot listen on %.100s port %u: want a free port and an address of this machine",
-            params->listen, params->port);
+        explain_bind(params, out_error);
         network_destroy(&network);
     }
+    lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
     return network;
 }
 

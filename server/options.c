@@ -226,6 +226,8 @@ enum options_result options_read(int argument_count, char *const *arguments,
     for (int i = 1; i < argument_count; i++) {
         if (strcmp(arguments[i], "--help") == 0 || strcmp(arguments[i], "-h") == 0)
             return OPTIONS_HELP;
+        if (strcmp(arguments[i], "--version") == 0)
+            return OPTIONS_VERSION;
     }
     memset(out_options, 0, sizeof(*out_options));
     for (size_t i = 0; i < ROW_COUNT; i++)
@@ -261,4 +263,6 @@ void options_write_help(char *out, size_t size)
         if (used < size)
             used += (size_t)snprintf(out + used, size - used, "\n");
     }
+    if (used < size)
+        snprintf(out + used, size - used, "  %-28s %s\n", "--version", "print the version");
 }

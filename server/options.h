@@ -30,7 +30,8 @@ struct options {
 
 enum options_result {
     OPTIONS_RUN,
-    OPTIONS_HELP, // --help was asked for
+    OPTIONS_HELP,    // --help was asked for
+    OPTIONS_VERSION, // --version was asked for
     OPTIONS_WRONG,
 };
 

@@ -265,13 +265,18 @@ struct render_thread *render_thread_start(const struct render_thread_params *par
     return thread;
 }
 
+void render_thread_stop(struct render_thread *thread)
+{
+    atomic_store(&thread->stop, true);
+    mailbox_wake(thread->params.mailbox);
+}
+
 void render_thread_destroy(struct render_thread **thread)
 {
     struct render_thread *t = *thread;
     if (!t)
         return;
-    atomic_store(&t->stop, true);
-    mailbox_wake(t->params.mailbox);
+    render_thread_stop(t);
     pthread_join(t->thread, NULL);
     scene_loader_destroy(&t->loader);
     file_watch_destroy(&t->watch);

@@ -42,6 +42,9 @@ struct render_status {
 // NULL when out of memory or threads.
 struct render_thread *render_thread_start(const struct render_thread_params *params);
 
+// Asks the thread to end after what it is doing; does not wait. Any thread.
+void render_thread_stop(struct render_thread *thread);
+
 // Stops and joins.
 void render_thread_destroy(struct render_thread **thread);
 

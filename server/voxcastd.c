@@ -1,9 +1,11 @@
 // voxcastd: renders a scene and streams it to browsers.
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "protocol/limits.h"
@@ -12,6 +14,9 @@
 #include "server/options.h"
 #include "server/render_thread.h"
 #include "voxcast_paths.h"
+
+// Once told to stop, the program ends within this time, whatever a driver or a file keeps it at.
+#define STOP_NS 800000000
 
 extern char **environ;
 
@@ -151,15 +156,40 @@ static bool start_threads(struct daemon *daemon, struct error *error)
     return true;
 }
 
-// In the order that lets each part finish what the others wait for.
-static bool stop(struct daemon *daemon)
+// SIGINT and SIGTERM, which main() alone takes.
+static void list_signals(sigset_t *out_signals)
 {
-    bool fine = true;
+    sigemptyset(out_signals);
+    sigaddset(out_signals, SIGTERM);
+    sigaddset(out_signals, SIGINT);
+}
+
+// Compiling a shader, drawing a frame or reading a file may take many seconds, and none can be
+// interrupted. Nothing is lost by ending there: clients have been told, and files are removed.
+static void *end_in_time(void *exit_status)
+{
+    sigset_t signals;
+    list_signals(&signals);
+    sigtimedwait(&signals, NULL, &(struct timespec){.tv_nsec = STOP_NS}); // or a second signal
+    log_write(LOG_INFO, "stopped_at_work");
+    _exit((int)(intptr_t)exit_status);
+}
+
+// In the order that lets each part finish what the others wait for. Returns the exit status.
+static int stop(struct daemon *daemon, bool fine)
+{
     if (daemon->render) {
         struct render_status status;
         render_thread_get_status(daemon->render, &status);
-        fine = !status.failed;
+        fine = fine && !status.failed;
+        render_thread_stop(daemon->render);
     }
+    if (daemon->accuracy)
+        accuracy_service_stop(daemon->accuracy);
+    int exit_status = fine ? 0 : 1;
+    pthread_t watchdog;
+    if (pthread_create(&watchdog, NULL, end_in_time, (void *)(intptr_t)exit_status) == 0)
+        pthread_detach(watchdog);
     if (daemon->network)
         network_stop(daemon->network);
     if (daemon->outbox)
@@ -171,7 +201,7 @@ static bool stop(struct daemon *daemon)
     outbox_destroy(&daemon->outbox);
     frame_stream_destroy(&daemon->stream);
     mailbox_destroy(&daemon->mailbox);
-    return fine;
+    return exit_status;
 }
 
 int main(int argument_count, char **arguments)
@@ -186,11 +216,13 @@ int main(int argument_count, char **arguments)
         fputs(help, stdout);
         return 0;
     }
+    if (result == OPTIONS_VERSION) {
+        puts("voxcastd " VOXCAST_VERSION);
+        return 0;
+    }
     // Before any thread starts: all inherit it, and sigwait() below gets the signals.
     sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGTERM);
-    sigaddset(&signals, SIGINT);
+    list_signals(&signals);
     pthread_sigmask(SIG_BLOCK, &signals, NULL);
     signal(SIGPIPE, SIG_IGN);
     log_set_level(daemon.options.log_level);
@@ -206,5 +238,5 @@ int main(int argument_count, char **arguments)
     } else {
         fprintf(stderr, "voxcastd: %s\n", error.message);
     }
-    return stop(&daemon) && fine ? 0 : 1;
+    return stop(&daemon, fine);
 }
