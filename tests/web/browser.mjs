@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-import { startDaemon, stopDaemon } from './client.mjs';
+import { PATIENCE_MS, startDaemon, stopDaemon } from './client.mjs';
 
 const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
 const { chromium } = require('playwright-core');
@@ -31,7 +31,9 @@ export async function openBrowser(viewport = { width: 1280, height: 800 }) {
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     args: FLAGS,
     viewport,
+    timeout: PATIENCE_MS,
   });
+  context.setDefaultTimeout(PATIENCE_MS);
   const close = async () => {
     await context.close();
     rmSync(profile, { recursive: true, force: true });

@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
 import { difference, openBrowser, openClient, pixels, untilStill } from './browser.mjs';
-import { Client, startDaemon, stopDaemon } from './client.mjs';
+import { Client, PATIENCE_MS, startDaemon, stopDaemon } from './client.mjs';
 
 describe('a server that goes away', () => {
   let daemon, browser;
@@ -36,14 +36,14 @@ describe('a server that goes away', () => {
     const state = page.locator('#connection');
     await page.waitForFunction(() => document.getElementById('connection').dataset.state !== 'open');
     daemon = await startDaemon(['--scene', 'builtin:cornell', '--port', String(daemon.port)]);
-    await page.locator('#connection[data-state=open]').waitFor({ timeout: 15000 });
+    await page.locator('#connection[data-state=open]').waitFor();
     assert.equal(await state.innerText(), 'Connected');
     // As openClient() does: the new server lights indirectly again.
     await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }));
     await untilStill(page, 1000);
     assert.equal(await page.locator('[data-light]').count(), 0, 'the new server has no such light');
     // Nothing tells which still picture is the first without indirect light.
-    for (const end = Date.now() + 20000; difference(turned, await pixels(page)) >= 1; await untilStill(page, 1000))
+    for (const end = Date.now() + PATIENCE_MS; difference(turned, await pixels(page)) >= 1; await untilStill(page, 1000))
       assert.ok(Date.now() < end, 'the camera stays where it was');
   });
 });

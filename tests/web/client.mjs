@@ -6,6 +6,12 @@ const require = createRequire(new URL('../../web_client/package.json', import.me
 const WebSocket = require('ws');
 
 /**
+ * No test waits longer. What tests wait for takes less than a tenth of it on two slow cores without a
+ * GPU, under sanitizers: it ends what hangs, and judges no speed.
+ */
+export const PATIENCE_MS = 600000;
+
+/**
  * Starts voxcastd on a free port. VOXCASTD names the program. `env` is added to its environment;
  * `before` is what a shell does before it becomes the program, such as setting limits.
  */
@@ -27,7 +33,7 @@ export async function startDaemon(args = [], { env = {}, before = ':' } = {}) {
   daemon.port = Number(/:(\d+)\//.exec(line)[1]);
   daemon.http = `http://127.0.0.1:${daemon.port}`;
   daemon.url = `ws://127.0.0.1:${daemon.port}/`;
-  for (let i = 0; i < 600; i++) {
+  for (const end = Date.now() + PATIENCE_MS; Date.now() < end; ) {
     if ((await fetch(`${daemon.http}/readyz`)).status === 200) return daemon;
     await sleep(100);
   }
@@ -136,7 +142,7 @@ export class Client {
   }
 
   /** Resolves when `check` returns something true. */
-  async until(check, what, ms = 20000) {
+  async until(check, what, ms = PATIENCE_MS) {
     const end = Date.now() + ms;
     while (Date.now() < end) {
       const found = check();
@@ -146,10 +152,10 @@ export class Client {
     throw new Error(`nothing came in ${ms} ms: ${what}`);
   }
 
-  /** Waits until no frame has come for `ms`. */
+  /** Waits until the picture is done and no frame has come for `ms` since. */
   async untilStill(ms = 600) {
     let count = -1;
-    while (count !== this.frames.length) {
+    while (count !== this.frames.length || !this.frames.at(-1)?.converged) {
       count = this.frames.length;
       await sleep(ms);
     }

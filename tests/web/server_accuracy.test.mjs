@@ -14,8 +14,6 @@ import { Client, startDaemon, stopDaemon } from './client.mjs';
 
 const QUICK = ['live', 'none', 'draft', 'interactive', 'high', 'final'];
 const OVER = ['done', 'cancelled', 'failed'];
-// Sanitizers make everything slower by an order.
-const PATIENCE_MS = 240000;
 
 /** A client with a small view of its own whose picture has come to rest. */
 async function arrive(daemon, view = {}) {
@@ -28,7 +26,7 @@ async function arrive(daemon, view = {}) {
 
 /** Waits for a converged frame that comes after the first `from`. */
 const settled = (client, from = 0) =>
-  client.until(() => client.frames.slice(from).find(({ converged }) => converged), 'a picture at rest', 60000);
+  client.until(() => client.frames.slice(from).find(({ converged }) => converged), 'a picture at rest');
 
 const progress = (client, id) =>
   client.notifications
@@ -37,7 +35,7 @@ const progress = (client, id) =>
 
 /** Waits until a notification of the measurement fulfils `check`. */
 const heard = (client, id, check, what) =>
-  client.until(() => progress(client, id).find(check), what, PATIENCE_MS);
+  client.until(() => progress(client, id).find(check), what);
 
 async function start(client, params) {
   const { result, error } = await client.call('accuracy.start', params);
@@ -186,7 +184,7 @@ describe('accuracy', () => {
       // What is no path at all is hung up on.
       assert.match(await rawStatus(daemon.port, path), /^$| 40[34] /, path);
     await client.close();
-    await client.until(() => folders().length === 0, 'the folder goes with the client', PATIENCE_MS);
+    await client.until(() => folders().length === 0, 'the folder goes with the client');
   });
 
   test('ends when it is told to, in every state, and when its client leaves', async () => {
@@ -232,7 +230,7 @@ describe('accuracy', () => {
     await heard(second, last.measurement, ({ done }) => done === 1, 'a rung of the second');
     await second.close();
     const third = await arrive(daemon);
-    await third.until(() => folders().length === 0, 'no folder is left', PATIENCE_MS);
+    await third.until(() => folders().length === 0, 'no folder is left');
     await third.close();
   });
 

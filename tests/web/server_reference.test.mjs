@@ -53,10 +53,9 @@ describe('reference', () => {
   test('starts anew with each edit and camera', async () => {
     const client = await hello(daemon, { width: 320, height: 180 });
     await client.until(() => traced(client).some((f) => f.width === 320 && f.referenceSamples > 4), 'some samples');
-    const asked = Date.now();
     const edit = await client.call('material.update', { id: 0, set: { roughness: 0.9 } });
     assert.ok(edit.result, JSON.stringify(edit.error));
-    assert.ok(Date.now() - asked < 1000, 'a command does not wait for paths');
+    assert.ok(!client.frames.at(-1).converged, 'a command does not wait for paths');
     const edited = () => client.frames.filter(({ sceneRevision }) => sceneRevision >= edit.result.revision);
     await client.until(() => edited().length, 'a frame with the edit');
     assert.equal(edited()[0].referenceSamples, 0, 'direct light shows the edit at once');
