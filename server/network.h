@@ -25,6 +25,7 @@ struct network_params {
     const char *token;        // "" for none: who does not bring one is an editor
     const char *viewer_token; // "" for none
     uint32_t message_bytes;
+    uint32_t queue_bytes; // of texts that may wait for one client
     uint32_t message_rate;
     struct mailbox *mailbox;
     struct frame_stream *stream;

@@ -11,9 +11,8 @@
 #include "protocol/rpc.h"
 #include "server/network.h"
 
-#define SESSION_MAX_QUEUED_BYTES (64u << 20)
-#define SESSION_HELLO_SECONDS    10
-#define SESSION_MAX_RATE_ERRORS  400u
+#define SESSION_HELLO_SECONDS   10
+#define SESSION_MAX_RATE_ERRORS 400u
 
 enum close_code {
     CLOSE_GOING_AWAY = 1001,

@@ -55,7 +55,7 @@ void session_send(struct session *session, struct text *text)
         session->first = link;
     session->last = link;
     session->queued_bytes += text->length;
-    if (session->queued_bytes > SESSION_MAX_QUEUED_BYTES)
+    if (session->queued_bytes > session->network->params.queue_bytes)
         session_close(session, CLOSE_TOO_SLOW, "too many replies wait to be read");
     lws_callback_on_writable(session->wsi);
 }

@@ -48,6 +48,8 @@ static const struct option_row rows[] = {
     NUMBER("max-clients", max_clients, "16", 1, FRAME_STREAM_MAX_CLIENTS, "clients at once"),
     NUMBER("message-bytes", message_bytes, "65536", 1024, PROTOCOL_MAX_MESSAGE_BYTES,
            "largest message of a client"),
+    NUMBER("queue-bytes", queue_bytes, "67108864", 1u << 20, 1u << 30,
+           "replies that may wait for one client; beyond, it is hung up on"),
     NUMBER("message-rate", message_rate, "240", 1, 100000, "messages a second of one client"),
     NUMBER("jpeg-quality", jpeg_quality, "85", 1, 100, "quality of the frames"),
     NUMBER("jpeg-threads", jpeg_threads, "2", 1, JPEG_MAX_WORKERS, "threads that encode frames"),

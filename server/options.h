@@ -22,6 +22,7 @@ struct options {
     char allow_origin[OPTIONS_TEXT_SIZE]; // origins with commas between
     uint32_t max_clients;
     uint32_t message_bytes;
+    uint32_t queue_bytes;  // of replies that may wait for one client
     uint32_t message_rate; // a second, for each client
     uint32_t jpeg_quality;
     uint32_t jpeg_threads;

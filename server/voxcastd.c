@@ -112,6 +112,7 @@ static bool create_parts(struct daemon *daemon, struct error *error)
             .token = daemon->token,
             .viewer_token = daemon->viewer_token,
             .message_bytes = options->message_bytes,
+            .queue_bytes = options->queue_bytes,
             .message_rate = options->message_rate,
             .mailbox = daemon->mailbox,
             .stream = daemon->stream,
@@ -171,7 +172,6 @@ static void *end_in_time(void *exit_status)
     sigset_t signals;
     list_signals(&signals);
     sigtimedwait(&signals, NULL, &(struct timespec){.tv_nsec = STOP_NS}); // or a second signal
-    log_write(LOG_INFO, "stopped_at_work");
     _exit((int)(intptr_t)exit_status);
 }
 
@@ -182,14 +182,16 @@ static int stop(struct daemon *daemon, bool fine)
         struct render_status status;
         render_thread_get_status(daemon->render, &status);
         fine = fine && !status.failed;
-        render_thread_stop(daemon->render);
     }
-    if (daemon->accuracy)
-        accuracy_service_stop(daemon->accuracy);
     int exit_status = fine ? 0 : 1;
     pthread_t watchdog;
     if (pthread_create(&watchdog, NULL, end_in_time, (void *)(intptr_t)exit_status) == 0)
         pthread_detach(watchdog);
+    log_write(LOG_INFO, "stopping");
+    if (daemon->render)
+        render_thread_stop(daemon->render);
+    if (daemon->accuracy)
+        accuracy_service_stop(daemon->accuracy);
     if (daemon->network)
         network_stop(daemon->network);
     if (daemon->outbox)
@@ -234,7 +236,6 @@ int main(int argument_count, char **arguments)
     if (fine) {
         int number = 0;
         sigwait(&signals, &number);
-        log_write(LOG_INFO, "stopping signal=%d", number);
     } else {
         fprintf(stderr, "voxcastd: %s\n", error.message);
     }

@@ -90,11 +90,14 @@ static void help_names_every_option(void **state)
     struct options options;
     struct error error;
     assert_int_equal(read_all(arguments, NULL, &options, &error), OPTIONS_HELP);
+    arguments[1] = "--version";
+    assert_int_equal(read_all(arguments, NULL, &options, &error), OPTIONS_VERSION);
     char help[8192];
     options_write_help(help, sizeof(help));
     assert_true(strlen(help) < sizeof(help) - 1);
     assert_non_null(strstr(help, "--allow-origin"));
     assert_non_null(strstr(help, "--log-level"));
+    assert_non_null(strstr(help, "--version"));
 }
 
 int main(void)
