@@ -316,6 +316,11 @@ bool accuracy_service_prepare(struct accuracy_service *service,
                                            .height = session->params.height};
     memcpy(out_ticket->id, session->id, sizeof(out_ticket->id));
     pthread_mutex_lock(&service->mutex);
+    if (service->stop) {
+        pthread_mutex_unlock(&service->mutex);
+        accuracy_session_destroy(&session);
+        return error_set(out_error, "the server goes away");
+    }
     struct accuracy_session *former = abandon(service, request->client_id);
     struct accuracy_session **end = &service->sessions;
     while (*end)

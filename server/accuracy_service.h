@@ -30,8 +30,8 @@ struct accuracy_service_params {
 // The thread starts with the first measurement. NULL when out of memory.
 struct accuracy_service *accuracy_service_create(const struct accuracy_service_params *params);
 
-// Cancels all measurements and removes their files, for a program that ends; does not wait for what
-// is being measured. Only accuracy_service_destroy() may follow. Any thread.
+// Cancels all measurements and removes their files, for a program that ends; none can be prepared
+// any more. Does not wait for what is being measured. Any thread.
 void accuracy_service_stop(struct accuracy_service *service);
 
 // Ends what is being measured, which may take as long as one frame or the building of a BVH, and

@@ -6,11 +6,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <sys/random.h>
 
 #include <cjson/cJSON.h>
 
 #define MAX_OPEN_FOLDERS 4
+#define REMOVE_TRIES     10
 
 static bool choose_id(char out_id[ACCURACY_ID_SIZE])
 {
@@ -89,16 +91,20 @@ static int remove_entry(const char *path, const struct stat *status, int kind, s
     (void)status;
     (void)kind;
     (void)place;
-    return remove(path);
+    // What is being written may be renamed meanwhile.
+    return remove(path) == 0 || errno == ENOENT ? 0 : -1;
 }
 
 void accuracy_session_remove_files(const struct accuracy_session *session)
 {
-    if (session->folder[0] &&
-        nftw(session->folder, remove_entry, MAX_OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS) != 0 &&
-        errno != ENOENT)
-        log_write(LOG_WARN, "accuracy_files_left folder=\"%s\" reason=\"%s\"", session->folder,
-                  strerror(errno));
+    // Files may come while others go; none can once the folder has gone.
+    for (int i = 0; session->folder[0] && i < REMOVE_TRIES; i++) {
+        nftw(session->folder, remove_entry, MAX_OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS);
+        if (access(session->folder, F_OK) != 0)
+            return;
+    }
+    if (session->folder[0])
+        log_write(LOG_WARN, "accuracy_files_left folder=\"%s\"", session->folder);
 }
 
 void accuracy_session_destroy(struct accuracy_session **session_slot)
