@@ -19,6 +19,7 @@
 int cli_render(int argc, char **argv);
 int cli_info(int argc, char **argv);
 int cli_bench(int argc, char **argv);
+int cli_shaders(int argc, char **argv);
 int cli_compare(int argc, char **argv);
 int cli_accuracy(int argc, char **argv);
 int cli_stability(int argc, char **argv); // in tests/stability/, with its cases

@@ -20,6 +20,8 @@ static const char usage[] =
     "                            voxcast accuracy --help\n"
     "  stability                 small scenes that try to break the numbers; see\n"
     "                            voxcast stability --help\n"
+    "  shaders SCENE             have the driver compile what a scene's first frames need; see\n"
+    "                            voxcast shaders --help\n"
     "  --version                 print the version\n";
 
 int main(int argc, char **argv)
@@ -39,12 +41,13 @@ int main(int argc, char **argv)
         int (*run)(int argc, char **argv);
     } commands[] = {{"render", cli_render},     {"info", cli_info},
                     {"bench", cli_bench},       {"compare", cli_compare},
-                    {"accuracy", cli_accuracy}, {"stability", cli_stability}};
+                    {"accuracy", cli_accuracy}, {"stability", cli_stability},
+                    {"shaders", cli_shaders}};
     for (size_t i = 0; i < sizeof(commands) / sizeof(commands[0]); i++)
         if (strcmp(argv[1], commands[i].name) == 0)
             return commands[i].run(argc - 1, argv + 1);
     return cli_fail(CLI_EXIT_USAGE,
-                    "unknown command \"%s\"; known are render, info, bench, compare, accuracy and "
-                    "stability",
+                    "unknown command \"%s\"; known are render, info, bench, compare, accuracy, "
+                    "stability and shaders",
                     argv[1]);
 }
