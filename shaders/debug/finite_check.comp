@@ -40,16 +40,17 @@ uint half_is_bad(uint bits)
     return (bits & 0x7c00u) == 0x7c00u ? 1u : 0u;
 }
 
-uint count_bad(uint at)
+// `shape` and `masks` are those of the block: storage is slow to read again for each word.
+uint count_bad(uint at, uvec4 shape, uvec4 masks)
 {
 #if TEXTURE == 0
-    uint bit = 1u << min(at % check.shape.y, 31u);
+    uint bit = 1u << min(at % shape.y, 31u);
     uint word = words[at];
-    return ((check.masks.x & bit) != 0u ? float_is_bad(word) : 0u) +
-           ((check.masks.y & bit) != 0u ? half_is_bad(word) : 0u) +
-           ((check.masks.z & bit) != 0u ? half_is_bad(word >> 16) : 0u);
+    return ((masks.x & bit) != 0u ? float_is_bad(word) : 0u) +
+           ((masks.y & bit) != 0u ? half_is_bad(word) : 0u) +
+           ((masks.z & bit) != 0u ? half_is_bad(word >> 16) : 0u);
 #else
-    int level = int(check.shape.w);
+    int level = int(shape.w);
     uint width = uint(textureSize(checked, level).x);
     uint height = uint(textureSize(checked, level).y);
     ivec3 place = ivec3(at % width, at / width % height, at / width / height);
@@ -66,12 +67,13 @@ uint count_bad(uint at)
 
 void main()
 {
+    uvec4 shape = check.shape, masks = check.masks;
     uint stride = gl_NumWorkGroups.x * LINEAR_GROUP;
-    for (uint at = gl_GlobalInvocationID.x; at < check.shape.x; at += stride) {
-        uint bad = count_bad(at);
+    for (uint at = gl_GlobalInvocationID.x; at < shape.x; at += stride) {
+        uint bad = count_bad(at, shape, masks);
         if (bad > 0u) {
-            atomicAdd(check.results[check.shape.z].x, bad);
-            atomicMin(check.results[check.shape.z].y, at);
+            atomicAdd(check.results[shape.z].x, bad);
+            atomicMin(check.results[shape.z].y, at);
         }
     }
 }
