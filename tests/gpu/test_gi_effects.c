@@ -64,8 +64,10 @@ static void stage_init(struct stage *stage, struct scene *scene, enum gi_method 
     assert_non_null(stage->view);
     stage->params = gi_params(32, 32, method);
     stage->params.settings.soft_shadows = true;
-    // Neither how fine voxels are nor how often light bounces matters to what is on: only to time.
+    // How fine voxels are, how many cones they send and how often light bounces matters to time
+    // alone, not to what is on.
     stage->params.settings.voxel_resolution = VOXEL_RESOLUTION_64;
+    stage->params.settings.cone_set = CONE_SET_5;
     stage->params.settings.clip_levels = 2;
     stage->params.settings.bounces = 2;
     stage->params.quality = QUALITY_HIGH; // lower ones leave soft shadows out
@@ -362,9 +364,10 @@ static void check_planned_is_forced(struct gi_report *report, const char *name,
     struct frame_params params = gi_params(64, 36, method);
     params.output = FRAME_OUTPUT_RGBA8;
     params.settings.soft_shadows = true;
-    // What is left out does not depend on how fine voxels are, nor on how often light bounces; the
-    // time of this test does.
+    // What is left out does not depend on how fine voxels are, on cones and bounces; the time of
+    // this test does.
     params.settings.voxel_resolution = VOXEL_RESOLUTION_64;
+    params.settings.cone_set = CONE_SET_5;
     params.settings.clip_levels = 2;
     params.settings.bounces = 2;
     gi_scene_camera(scene, &params.camera);

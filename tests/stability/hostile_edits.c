@@ -12,7 +12,12 @@
 #include "tests/stability/scene_check.h"
 #include "tests/stability/stage.h"
 
+// Sanitizers take five times as long for each.
+#ifdef VOXCAST_SANITIZED
+#define SEQUENCES 10000u
+#else
 #define SEQUENCES 100000u
+#endif
 #define MAX_EDITS 5u
 // The document starts anew after so many, so that it stays small.
 #define SEQUENCES_OF_DOCUMENT 64u
