@@ -16,7 +16,12 @@
 #include "voxcast_paths.h"
 
 // Once told to stop, the program ends within this time, whatever a driver or a file keeps it at.
-#define STOP_NS 800000000
+// Sanitizers are to see what is left when all has ended.
+#ifdef VOXCAST_SANITIZED
+#define STOP_MS 60000
+#else
+#define STOP_MS 800
+#endif
 
 extern char **environ;
 
@@ -171,7 +176,8 @@ static void *end_in_time(void *exit_status)
 {
     sigset_t signals;
     list_signals(&signals);
-    sigtimedwait(&signals, NULL, &(struct timespec){.tv_nsec = STOP_NS}); // or a second signal
+    const struct timespec limit = {STOP_MS / 1000, STOP_MS % 1000 * 1000000L};
+    sigtimedwait(&signals, NULL, &limit); // or a second signal
     _exit((int)(intptr_t)exit_status);
 }
 

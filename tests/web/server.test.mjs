@@ -251,7 +251,7 @@ test('limits the rate of messages', async () => {
   await client.until(() => client.notifications.find((n) => n.error?.code === -32003), 'the error');
   for (let i = 0; i < 500; i++) client.notify('view.configure', { paused: true });
   assert.equal((await client.closed).code, 4429);
-  assert.equal(await stopDaemon(daemon), 0);
+  assert.equal(await stopDaemon(daemon), 0, daemon.log);
 });
 
 test('listens on its address alone', async () => {
@@ -265,7 +265,7 @@ test('listens on its address alone', async () => {
     socket.on('error', (error) => resolve(error.code));
   });
   assert.equal(answer, 'ECONNREFUSED');
-  assert.equal(await stopDaemon(daemon), 0);
+  assert.equal(await stopDaemon(daemon), 0, daemon.log);
   await assert.rejects(
     startDaemon(['--listen', '203.0.113.1', '--port', String(daemon.port)]),
     /listen is 203\.0\.113\.1; allowed are/,
@@ -293,7 +293,7 @@ test('wants the token', async () => {
   // Measuring changes nothing of the document.
   assert.ok((await viewer.call('accuracy.start', { noise: 0.1 })).result);
   assert.deepEqual((await viewer.call('accuracy.cancel', {})).result, {});
-  assert.equal(await stopDaemon(daemon), 0);
+  assert.equal(await stopDaemon(daemon), 0, daemon.log);
   assert.equal((await editor.closed).code, 1001);
 });
 
@@ -321,7 +321,7 @@ test('keeps the last good texture while its file is broken', async () => {
   writeFileSync(join(folder, 'colour.tga'), picture(200));
   await client.until(() => client.notifications.find((n) => n.method === 'scene.loaded'), 'scene.loaded');
   assert.equal(await textures(), 1);
-  assert.equal(await stopDaemon(daemon), 0);
+  assert.equal(await stopDaemon(daemon), 0, daemon.log);
 });
 
 test('reloads a changed scene file and keeps the last good one', async () => {
@@ -342,5 +342,5 @@ test('reloads a changed scene file and keeps the last good one', async () => {
   assert.equal((await client.call('scene.get')).result.counts.triangles, 2);
   const { scenes } = (await client.call('scene.list')).result;
   assert.ok(scenes.some((s) => s.source === 'one.obj'));
-  assert.equal(await stopDaemon(daemon), 0);
+  assert.equal(await stopDaemon(daemon), 0, daemon.log);
 });
