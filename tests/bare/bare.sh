@@ -55,7 +55,7 @@ work='' inside_pid=''
 # Of the namespace: the only child of unshare.
 first_process() {
     local child=''
-    read -r child _ <"/proc/$inside_pid/task/$inside_pid/children" || true
+    { read -r child _ <"/proc/$inside_pid/task/$inside_pid/children"; } 2>/dev/null || true
     printf '%s' "${child:-none}"
 }
 
