@@ -95,6 +95,8 @@ void render_send_statistics(struct render_thread *thread, uint32_t slot)
     frame_stream_get_totals(thread->params.stream, &totals);
     cJSON *params = cJSON_CreateObject();
     cJSON_AddNumberToObject(params, "frame_id", (double)client->frame_count);
+    cJSON_AddNumberToObject(params, "edit_id", (double)client->header.edit_id);
+    cJSON_AddNumberToObject(params, "camera_revision", (double)client->header.camera_revision);
     cJSON_AddNumberToObject(params, "width", client->options.width);
     cJSON_AddNumberToObject(params, "height", client->options.height);
     cJSON_AddNumberToObject(params, "render_width", statistics->render_width);

@@ -211,6 +211,18 @@ static void fill_header(struct render_thread *thread, struct render_client *clie
     };
 }
 
+// The newest frame shows what has come since, too: nothing of it has changed the picture. True if
+// there was any such thing, which clients hear of by their statistics.
+static bool take_unchanged(struct render_client *client)
+{
+    struct frame_header *shown = &client->header;
+    bool news =
+        shown->camera_revision != client->camera_revision || shown->edit_id != client->edit_id;
+    shown->camera_revision = client->camera_revision;
+    shown->edit_id = client->edit_id;
+    return news;
+}
+
 static void fail_draw(struct render_thread *thread, struct render_client *client,
                       const struct error *error)
 {
@@ -279,7 +291,7 @@ static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
     } else if (result == RENDER_UNCHANGED) {
         client->dirty = false;
         client->dirty_since_us = 0;
-        if (client->statistics_due)
+        if (take_unchanged(client) || client->statistics_due)
             render_send_statistics(thread, slot);
     } else if (result == RENDER_PENDING) {
         client->dirty_since_us = 0;

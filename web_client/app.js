@@ -50,6 +50,10 @@ export class App {
     this.connection = new Connection(url.href, () => this.#identity());
     this.document = new SceneDocument();
     this.timer = new EditTimer();
+    /** @type {any} the header of the frame on the screen */
+    this.shownHeader = null;
+    /** @type {any} of this connection */
+    this.newestStats = null;
     this.editor = new Editor(this.connection, this.document, this.timer, (error) => this.#refused(error));
     this.selection = new Selection();
     this.camera = new Camera();
@@ -149,6 +153,8 @@ export class App {
   }
 
   #takeStats(/** @type {any} */ params) {
+    this.newestStats = params;
+    this.#noteRevision();
     this.stats.takeStats(params);
     this.renderTab.takeStats(params);
   }
@@ -166,6 +172,7 @@ export class App {
     this.clientId = hello.client_id;
     this.editor.reset();
     this.timer.reset();
+    this.newestStats = null;
     this.picture.reset();
     this.measurement.forget(); // the server measures for a connection
     this.view.begin(hello);
@@ -293,12 +300,21 @@ export class App {
     }, RATE_MS);
   }
 
+  /** Tells which camera the shown frame is of. One that changed nothing came without a frame, but in the statistics. */
+  #noteRevision() {
+    const { shownHeader: shown, newestStats: stats } = this;
+    if (!shown) return;
+    const told = stats?.frame_id === shown.frameId ? stats.camera_revision : 0;
+    byId('stage').dataset.cameraRevision = String(Math.max(shown.cameraRevision, told));
+  }
+
   #presented(/** @type {any} */ { header, decodeMs }) {
     this.#acknowledge(header);
     byId('waiting').hidden = true;
     byId('stage').dataset.frame = String(header.frameId);
     byId('stage').dataset.converged = String(header.converged);
-    byId('stage').dataset.cameraRevision = String(header.cameraRevision);
+    this.shownHeader = header;
+    this.#noteRevision();
     const rows = this.parameters('view').find((/** @type {any} */ row) => row.name === 'quality')?.values;
     this.badge.show(header, this.view.rung || (rows?.[header.quality] ?? ''));
     this.overlay.pose = this.sender.poseOf(header.cameraRevision);

@@ -137,6 +137,24 @@ describe('one daemon', () => {
     await client.close();
   });
 
+  test('tells of a camera that changes nothing, though no frame comes', async () => {
+    const client = await hello(daemon);
+    await client.call('view.configure', { width: 64, height: 36, quality: 'draft' });
+    const pose = { eye: [0, 1, 3.2], target: [0, 1, 0] };
+    await client.call('camera.set', { ...pose, revision: 1 });
+    await client.until(() => client.frames.find((f) => f.width === 64 && f.cameraRevision === 1), 'the camera in a frame');
+    await client.untilStill(1000);
+    const count = client.frames.length;
+    await client.call('camera.set', { ...pose, revision: 2 });
+    const told = await client.until(
+      () => client.notifications.find(({ method, params }) => method === 'stats' && params.camera_revision === 2),
+      'the camera in the statistics',
+    );
+    assert.equal(told.params.frame_id, client.frames.at(-1).frameId);
+    assert.equal(client.frames.length, count);
+    await client.close();
+  });
+
   test('has at most two frames under way', async () => {
     const client = await hello(daemon);
     client.acknowledge = false;
