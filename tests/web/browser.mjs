@@ -42,13 +42,16 @@ export async function openBrowser(viewport = { width: 1280, height: 800 }) {
 }
 
 /**
- * Opens the client and waits for its first picture, by direct light: pictures with indirect light are not
- * still for long.
+ * Opens the client and waits for its first picture, by direct light and with the quickest preset: others
+ * are not still for long.
  */
 export async function openClient(page, daemon) {
   await page.goto(`${daemon.http}/`);
   await page.locator('#stage[data-frame]').waitFor();
-  await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }));
+  await page.evaluate(() => {
+    globalThis.voxcast.view.configure({ quality: 'draft' });
+    return globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } });
+  });
   await untilStill(page);
 }
 
