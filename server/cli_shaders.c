@@ -3,6 +3,7 @@
 
 #include "server/cli.h"
 #include "server/cli_shot.h"
+#include "server/options.h"
 
 // Sides that are no powers of two, as those of nearly all views: drivers compile for that, too.
 #define WIDTH  320u
@@ -12,9 +13,10 @@
 #define FRAMES_PER_PRESET 3u
 
 static const char usage[] =
-    "usage: voxcast shaders SCENE [--gpu auto|software|N] [OPTIONS]\n"
+    "usage: voxcast shaders [SCENE] [--gpu auto|software|N] [OPTIONS]\n"
     "\n"
-    "Draws small frames of a scene with the presets that a client meets first, so that the driver\n"
+    "Draws small frames of a scene (default " OPTIONS_DEFAULT_SCENE
+    ") with the presets that a client meets first, so that the driver\n"
     "compiles their shaders and keeps them on disk: the daemon's first frame then comes at once.\n"
     "Prints lines of \"PERCENT what is under way\". Takes the options of camera and settings, "
     "too,\n"
@@ -74,9 +76,7 @@ int cli_shaders(int argc, char **argv)
     cli_take_shot(&parser, &options);
     if (!cli_parse(&parser, argc, argv, &status))
         return status;
-    if (parser.argument_count != 1)
-        return cli_fail(CLI_EXIT_USAGE, "want a scene; see voxcast shaders --help");
-    options.source = parser.arguments[0];
+    options.source = parser.argument_count > 0 ? parser.arguments[0] : OPTIONS_DEFAULT_SCENE;
     view_options_init(&defaults);
     status = cli_shot_load(&options, defaults.quality, &shot);
     if (status != 0)

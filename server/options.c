@@ -33,7 +33,7 @@ struct option_row {
     }
 
 static const struct option_row rows[] = {
-    TEXT("scene", scene, "builtin:cornell-objects", "SCENE",
+    TEXT("scene", scene, OPTIONS_DEFAULT_SCENE, "SCENE",
          "file or builtin:NAME; also without --scene"),
     TEXT("listen", listen, "127.0.0.1", "ADDRESS", "address to listen on"),
     NUMBER("port", port, "8080", 0, 65535, "TCP port; 0 takes a free one and prints it"),

@@ -10,6 +10,8 @@
 #define OPTIONS_MAX_ORIGINS 16u
 #define OPTIONS_TEXT_SIZE   1024u
 
+#define OPTIONS_DEFAULT_SCENE "builtin:cornell-objects"
+
 struct options {
     char scene[OPTIONS_TEXT_SIZE];
     char listen[OPTIONS_TEXT_SIZE]; // address

@@ -20,7 +20,7 @@ static const char usage[] =
     "                            voxcast accuracy --help\n"
     "  stability                 small scenes that try to break the numbers; see\n"
     "                            voxcast stability --help\n"
-    "  shaders SCENE             have the driver compile what a scene's first frames need; see\n"
+    "  shaders [SCENE]           have the driver compile what a scene's first frames need; see\n"
     "                            voxcast shaders --help\n"
     "  --version                 print the version\n";
 

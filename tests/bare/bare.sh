@@ -62,8 +62,9 @@ first_process() {
 cleanup() {
     # The first process of the namespace takes all others and all mounts with it; then unshare ends.
     if [ -n "$inside_pid" ]; then
-        kill -KILL "$(first_process)" 2>/dev/null || kill -KILL "$inside_pid" 2>/dev/null || true
-        wait "$inside_pid" 2>/dev/null || true
+        # It fails where the process has ended by itself.
+        kill -KILL "$inside_pid" 2>/dev/null || true
+        wait "$inside_pid" 2>/dev/null || true # the status of a killed process
     fi
     [ -z "$work" ] || rm -rf --one-file-system "$work"
 }
