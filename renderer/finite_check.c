@@ -9,6 +9,7 @@
 #include "renderer/passes/pass.h"
 #include "renderer/resident/resident.h"
 #include "renderer/view.h"
+#include "shared/finite_check.h"
 
 #define MAX_GROUPS  4096u
 #define EVERY_WORD  0xffffffffu
@@ -34,9 +35,9 @@ struct checked_list {
 
 // What the shader reads and writes.
 struct check_block {
-    uint32_t shape[4];
-    uint32_t masks[4];
-    uint32_t results[FINITE_MAX_RESOURCES][4];
+    struct finite_check_shape shape;
+    struct finite_check_masks masks;
+    struct finite_check_result results[FINITE_MAX_RESOURCES];
 };
 
 static struct checked *add(struct checked_list *list, const char *name, enum resource resource)
@@ -169,7 +170,7 @@ bool finite_check_run(const struct finite_check *check, struct finite_report *ou
         add_scene(&list, check->resident);
     struct check_block found = {0};
     for (uint32_t i = 0; i < FINITE_MAX_RESOURCES; i++)
-        found.results[i][1] = UINT32_MAX;
+        found.results[i].first = UINT32_MAX;
     struct gpu_buffer *block =
         gpu_buffer_create(check->gpu, "finite_check", GPU_BUFFER_STATIC, sizeof(found), &found);
     if (!block)
@@ -183,7 +184,7 @@ bool finite_check_run(const struct finite_check *check, struct finite_report *ou
     gpu_buffer_destroy(&block);
     *out_report = (struct finite_report){.count = done ? list.count : 0};
     for (uint32_t i = 0; i < out_report->count; i++)
-        out_report->resources[i] =
-            (struct finite_resource){list.items[i].name, found.results[i][0], found.results[i][1]};
+        out_report->resources[i] = (struct finite_resource){
+            list.items[i].name, found.results[i].count, found.results[i].first};
     return done;
 }

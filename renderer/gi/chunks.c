@@ -50,10 +50,11 @@ static void cluster_bounds(const float *m, const struct resident_cluster *cluste
 static bool append_chunk(struct voxel_volume *volume, uint32_t instance, uint32_t first,
                          uint32_t count, uint32_t region)
 {
-    size_t at = (size_t)volume->chunk_count * 4;
-    if (!reserve(volume, at + 4))
+    size_t words = sizeof(struct voxel_batch) / 4, at = volume->chunk_count * words;
+    if (!reserve(volume, at + words))
         return false;
-    memcpy(volume->scratch + at, (uvec4){instance, first, count, region}, sizeof(uvec4));
+    const struct voxel_batch batch = {instance, first, count, region};
+    memcpy(volume->scratch + at, &batch, sizeof(batch));
     volume->chunk_count++;
     return true;
 }
@@ -64,12 +65,12 @@ static bool add_instance_chunks(struct voxel_volume *volume, const struct reside
     const struct resident_instance *instance = &resident->instances[number];
     const float *matrix = instance->world_from_local;
     uint32_t triangles = instance->index_count / 3;
-    for (uint32_t at = 0; at < triangles; at += VOXEL_CHUNK) {
+    for (uint32_t at = 0; at < triangles; at += VOXEL_BATCH) {
         const struct resident_cluster *cluster =
             &resident->clusters[instance->cluster_first + (at >> ID_BLOCK_BITS)];
         float low[3], high[3];
         cluster_bounds(matrix, cluster, instance->scale, low, high);
-        uint32_t count = triangles - at < VOXEL_CHUNK ? triangles - at : VOXEL_CHUNK;
+        uint32_t count = triangles - at < VOXEL_BATCH ? triangles - at : VOXEL_BATCH;
         if (box_meets(volume, &volume->levels[level], box, low, high) &&
             !append_chunk(volume, number, at, count, volume->region_count))
             return false;
@@ -77,28 +78,22 @@ static bool add_instance_chunks(struct voxel_volume *volume, const struct reside
     return true;
 }
 
-// As voxel_region in shaders/lib/voxel_work.glsl.
-struct region_block {
-    ivec4 low;  // w: level
-    ivec4 size; // w: number of the first voxel
-};
-
 static bool add_regions(struct voxel_volume *volume, const struct resident *resident,
-                        struct region_block *regions)
+                        struct voxel_region *regions)
 {
     for (uint32_t level = 0; level < volume->lit_levels; level++) {
         const struct voxel_boxes *dirty = &volume->dirty[level];
         for (uint32_t i = 0; i < dirty->count; i++) {
             const struct voxel_box *box = &dirty->boxes[i];
-            struct region_block *region = &regions[volume->region_count];
+            struct voxel_region *region = &regions[volume->region_count];
             uint32_t voxels = 1;
             for (int axis = 0; axis < 3; axis++) {
                 region->low[axis] = box->low[axis];
                 region->size[axis] = box->high[axis] - box->low[axis];
                 voxels *= (uint32_t)region->size[axis];
             }
-            region->low[3] = (int32_t)level;
-            region->size[3] = (int32_t)volume->region_voxels;
+            region->level = level;
+            region->first_voxel = volume->region_voxels;
             for (uint32_t j = 0; j < resident->counts.instances; j++) {
                 const struct resident_instance *instance = &resident->instances[j];
                 if (instance->visible &&
@@ -159,7 +154,7 @@ static bool write_surfaces(struct voxel_volume *volume, const struct resident *r
 
 bool voxel_volume_prepare_work(struct voxel_volume *volume, const struct resident *resident)
 {
-    struct region_block regions[VOXEL_MAX_REGIONS];
+    struct voxel_region regions[VOXEL_MAX_REGIONS];
     memset(regions, 0, sizeof(regions));
     volume->region_count = 0;
     volume->region_voxels = 0;
@@ -169,13 +164,14 @@ bool voxel_volume_prepare_work(struct voxel_volume *volume, const struct residen
     if (!volume->work || volume->chunk_count > volume->chunk_capacity) {
         volume->chunk_capacity = 2 * volume->chunk_count + 64;
         if (!gpu_buffer_ensure(volume->gpu, &volume->work, "gi.work", GPU_BUFFER_STATIC,
-                               sizeof(regions) + (size_t)volume->chunk_capacity * sizeof(uvec4)))
+                               sizeof(regions) +
+                                   (size_t)volume->chunk_capacity * sizeof(struct voxel_batch)))
             return false;
     }
     if (volume->region_count > 0) {
         gpu_buffer_write(volume->work, 0, sizeof(regions), regions);
-        gpu_buffer_write(volume->work, sizeof(regions), volume->chunk_count * sizeof(uvec4),
-                         volume->scratch);
+        gpu_buffer_write(volume->work, sizeof(regions),
+                         volume->chunk_count * sizeof(struct voxel_batch), volume->scratch);
     }
     return true;
 }

@@ -22,18 +22,18 @@ void cone_directions_init(struct cone_directions *directions, enum cone_set set)
     *directions = (struct cone_directions){.count = count};
     float sum = 0.0f;
     for (uint32_t i = 0; i < count; i++) {
-        float *cone = directions->cones[i];
+        struct voxel_cone *cone = &directions->cones[i];
         float cosine = 1.0f - ((float)i + 0.5f) / (float)count;
         float sine = sqrtf(1.0f - cosine * cosine);
         float angle = GOLDEN_ANGLE * (float)i;
-        cone[0] = sine * cosf(angle);
-        cone[1] = sine * sinf(angle);
-        cone[2] = cosine;
-        cone[3] = cosine;
+        cone->direction[0] = sine * cosf(angle);
+        cone->direction[1] = sine * sinf(angle);
+        cone->direction[2] = cosine;
+        cone->weight = cosine;
         sum += cosine;
     }
     for (uint32_t i = 0; i < count; i++)
-        directions->cones[i][3] /= sum;
+        directions->cones[i].weight /= sum;
     float half_cosine = 1.0f - 1.0f / (float)count;
     directions->tangent = sqrtf(1.0f - half_cosine * half_cosine) / half_cosine;
 }

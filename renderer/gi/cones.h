@@ -3,12 +3,12 @@
 #define VOXCAST_RENDERER_GI_CONES_H
 
 #include "renderer/settings.h"
-#include "shared/voxel.h"
+#include "shared/voxel_block.h"
 
 struct cone_directions {
     uint32_t count;
-    float tangent;                   // of the half-angle
-    float cones[VOXEL_MAX_CONES][4]; // unit direction about +Z; weight: cosine over the sum of them
+    float tangent; // of the half-angle
+    struct voxel_cone cones[VOXEL_MAX_CONES];
 };
 
 uint32_t cone_set_count(enum cone_set set);

@@ -238,13 +238,12 @@ static uint64_t hash_word(uint64_t hash, uint64_t word)
     return (hash ^ word) * 1099511628211ull;
 }
 
-static uint64_t hash_vector(uint64_t hash, const vec4 vector)
+static uint64_t hash_march(uint64_t hash, const struct cone_march *march)
 {
-    for (int i = 0; i < 4; i++) {
-        uint32_t bits;
-        memcpy(&bits, &vector[i], sizeof(bits));
-        hash = hash_word(hash, bits);
-    }
+    uint32_t words[sizeof(*march) / 4];
+    memcpy(words, march, sizeof(words));
+    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+        hash = hash_word(hash, words[i]);
     return hash;
 }
 
@@ -267,20 +266,22 @@ static uint64_t light_key(const struct frame *frame, const struct voxel_volume *
     uint64_t hash = 1469598103934665603ull;
     for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
         hash = hash_word(hash, words[i]);
-    return hash_vector(hash, volume->uniforms.march);
+    return hash_march(hash, &volume->uniforms.cache_march);
 }
 
-static void fill_march(struct voxel_volume *volume, enum cone_set set, float step, vec4 out_march,
-                       vec4 out_cones[VOXEL_MAX_CONES])
+static void fill_march(struct voxel_volume *volume, enum cone_set set, float step,
+                       struct cone_march *out_march, struct voxel_cone out_cones[VOXEL_MAX_CONES])
 {
     struct cone_directions directions;
     cone_directions_init(&directions, set);
     memcpy(out_cones, directions.cones, sizeof(directions.cones));
     bool anisotropic = volume->params.directions == VOXEL_ANISOTROPIC;
-    out_march[0] = step;
-    out_march[1] = anisotropic ? START_VOXELS : START_VOXELS_ISOTROPIC;
-    out_march[2] = (float)directions.count;
-    out_march[3] = directions.tangent;
+    *out_march = (struct cone_march){
+        .step_diameters = step,
+        .start_voxels = anisotropic ? START_VOXELS : START_VOXELS_ISOTROPIC,
+        .cone_count = (float)directions.count,
+        .tan_half_angle = directions.tangent,
+    };
 }
 
 static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
@@ -290,12 +291,12 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     bool automatic = settings->cone_set == CONE_SET_AUTO;
     bool own_step = settings->cone_step > 0.0f;
     fill_march(volume, cache_cones_of(settings), own_step ? settings->cone_step : CACHE_STEP,
-               block->march, block->cones);
+               &block->cache_march, block->cache_cones);
     fill_march(volume, automatic ? frame->quality->cone_set : settings->cone_set,
-               own_step ? settings->cone_step : frame->quality->cone_step, block->pixel_march,
+               own_step ? settings->cone_step : frame->quality->cone_step, &block->pixel_march,
                block->pixel_cones);
-    block->light[0] = OCCLUSION_SHARE * frame->resident->diagonal_m;
-    block->light[1] = settings->indirect_intensity;
+    block->ao_radius_m = OCCLUSION_SHARE * frame->resident->diagonal_m;
+    block->indirect_intensity = settings->indirect_intensity;
 }
 
 enum gather_mode gi_gather_mode(const struct frame *frame)
@@ -372,7 +373,7 @@ static void gather_once_more(struct frame *frame, struct voxel_volume *volume)
     frame->gather_now = view->still_count < frame->still_frames;
     view->still_count += frame->gather_now;
     frame->still_count = view->still_count;
-    volume->uniforms.settle[1] = (float)view->still_count;
+    volume->uniforms.sample_count = (float)view->still_count;
     bool doubled = (view->still_count & (view->still_count - 1)) == 0;
     bool shown = view->still_count == frame->still_frames ||
                  (doubled && !waits_for_rays(frame, view->still_count));
@@ -443,7 +444,7 @@ bool gi_plan_gathering(struct frame *frame, struct error *out_error)
     else if (frame->gather != GATHER_CACHE)
         frame->still_frames = CONE_PICTURES;
     if (frame->gather != GATHER_CACHE) {
-        uint64_t key = hash_vector(volume->light.version, block->pixel_march);
+        uint64_t key = hash_march(volume->light.version, &block->pixel_march);
         key = hash_word(key, view->volume_serial);
         key = hash_word(key, (uint64_t)frame->gather);
         // Of what nobody asked for nothing has been gathered.
@@ -463,8 +464,8 @@ bool gi_plan_gathering(struct frame *frame, struct error *out_error)
     }
     // One ray does for any lobe, so that all gloss has rays of its own where there are any.
     bool rays = frame->gather == GATHER_RAYS;
-    block->light[2] = rays ? ALL_ROUGHNESS : frame->quality->specular_roughness;
-    block->settle[2] = rays ? 0.0f : frame->quality->specular_reflectance;
+    block->specular_max_roughness = rays ? ALL_ROUGHNESS : frame->quality->specular_roughness;
+    block->specular_min_reflectance = rays ? 0.0f : frame->quality->specular_reflectance;
     return !rays || !frame->gather_now || resident_need_tree(frame->resident) ||
            error_set(out_error, "a tree of the scene's triangles does not fit into memory");
 }

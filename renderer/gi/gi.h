@@ -47,8 +47,8 @@ uint32_t gi_gather_step(const struct frame *frame);
 // voxels are, and soft shadows are left to cones.
 #define GI_MOST_LIGHTS_OF_RAYS 16u
 
-// Pictures of what rays from pixels have found (GATHERED_ of shaders/shared/bindings.h) but for
-// shadows, which have all pixels.
+// Pictures of what rays from pixels have found (GATHERED_ of shaders/shared/ray_accumulation.h) but
+// for shadows, which have all pixels.
 uint32_t gi_gathered_pictures(const struct frame *frame);
 
 // Whether shadows of lamps that have a size are traced in the end; and in this frame shown.

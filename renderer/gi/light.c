@@ -123,11 +123,11 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     out_work->trace = !light->converged && !(light->relight && light->next_level != 0);
     // The first generation after an edit must not see old light where bounces are counted.
     bool feeds = params->feedback && (light->bounce > 0 || light->unlimited);
-    volume->uniforms.cache[0] = light->generation;
-    volume->uniforms.cache[1] = volume->frame;
-    volume->uniforms.cache[2] = (uint32_t)entry_budget(volume, params);
-    volume->uniforms.cache[3] = params->feedback;
-    volume->uniforms.settle[0] = light->peak;
+    volume->uniforms.cache_generation = light->generation;
+    volume->uniforms.frame_number = volume->frame;
+    volume->uniforms.trace_budget = (uint32_t)entry_budget(volume, params);
+    volume->uniforms.multi_bounce = params->feedback;
+    volume->uniforms.peak_radiance = light->peak;
     light->feeds = feeds;
 }
 

@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "shared/voxel.h"
+#include "shared/voxel_records.h"
+#include "shared/voxel_work.h"
 
 // Voxels low <= v < high of one level.
 struct voxel_box {

@@ -476,24 +476,24 @@ static void fill_levels(const struct voxel_volume *volume, struct voxel_block *b
         bool mip = i >= volume->lit_levels;
         for (int axis = 0; axis < 3; axis++) {
             target->origin[axis] = level->box.low[axis];
-            target->inner[axis] = level->inner.low[axis];
-            target->texels[axis] = 1;
+            target->inner_origin[axis] = level->inner.low[axis];
+            target->texel_origin[axis] = 1;
         }
-        target->origin[3] = edge;
-        target->inner[3] = level->inner.high[0] - level->inner.low[0];
-        target->texels[1] += outer * (int32_t)(mip ? volume->lit_levels : i);
+        target->edge = edge;
+        target->inner_edge = level->inner.high[0] - level->inner.low[0];
+        target->texel_origin[1] += outer * (int32_t)(mip ? volume->lit_levels : i);
         if (mip) {
-            target->texels[0] += mip_x;
+            target->texel_origin[0] += mip_x;
             mip_x += (int32_t)volume->face_count * (edge + 2);
         }
-        target->texels[3] = volume->face_count > 1 ? edge + 2 : 0;
+        target->face_stride = volume->face_count > 1 ? edge + 2 : 0;
         uint32_t log2 = log2_of(level->edge);
-        target->index[0] = mip ? 0 : i << (3 * log2);
-        target->index[1] = log2;
-        target->index[2] = clipmap && !mip;
-        target->index[3] = volume->dirty[i].count > 0;
-        target->size[0] = (float)level->voxel_edge_m;
-        target->size[1] = (float)(1.0 / level->voxel_edge_m);
+        target->first_index = mip ? 0 : i << (3 * log2);
+        target->edge_log2 = log2;
+        target->wraps = clipmap && !mip;
+        target->dirty = volume->dirty[i].count > 0;
+        target->voxel_edge_m = (float)level->voxel_edge_m;
+        target->inverse_voxel_edge = (float)(1.0 / level->voxel_edge_m);
     }
 }
 
@@ -503,23 +503,24 @@ void voxel_volume_bind(struct voxel_volume *volume)
     struct voxel_block *block = &volume->uniforms;
     for (int axis = 0; axis < 3; axis++)
         block->anchor[axis] = (float)volume->anchor[axis];
-    block->anchor[3] = volume->scale;
-    memcpy(block->counts,
-           (uvec4){volume->level_count, volume->face_count, volume->cell_capacity,
-                   volume->surfel_capacity},
-           sizeof(uvec4));
-    memcpy(block->work,
-           (uvec4){volume->region_count, volume->region_voxels, volume->chunk_count,
-                   volume->tile_capacity},
-           sizeof(uvec4));
-    memcpy(block->shape,
-           (uvec4){volume->lit_levels, face_words(volume), volume->face_capacity, volume->epoch},
-           sizeof(uvec4));
+    block->radiance_scale = volume->scale;
+    block->level_count = volume->level_count;
+    block->face_count = volume->face_count;
+    block->cell_capacity = volume->cell_capacity;
+    block->surfel_capacity = volume->surfel_capacity;
+    block->region_count = volume->region_count;
+    block->region_voxel_count = volume->region_voxels;
+    block->batch_count = volume->chunk_count;
+    block->tile_capacity = volume->tile_capacity;
+    block->cell_level_count = volume->lit_levels;
+    block->face_record_words = face_words(volume);
+    block->face_capacity = volume->face_capacity;
+    block->geometry_epoch = volume->epoch;
     // No cone blurs over more than a voxel of the coarsest level: wider ones take what is before an
     // opening or behind a corner for part of it, and see both sides of thin slanted walls.
-    block->light[3] = (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
-    block->options[0] = volume->cell_capacity;
-    block->options[3] = volume->instance_count;
+    block->cone_max_diameter_m = (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
+    block->list_capacity = volume->cell_capacity;
+    block->instance_count = volume->instance_count;
     fill_levels(volume, block);
     gpu_buffer_write(volume->block, 0, sizeof(*block), block);
     gpu_bind_uniforms(gpu, BIND_VOXELS, volume->block);
@@ -540,8 +541,9 @@ void voxel_volume_bind(struct voxel_volume *volume)
 
 void voxel_volume_choose_levels(struct voxel_volume *volume, uint32_t first, uint32_t end)
 {
-    volume->uniforms.options[1] = first;
-    volume->uniforms.options[2] = end;
-    gpu_buffer_write(volume->block, offsetof(struct voxel_block, options), sizeof(uvec4),
-                     volume->uniforms.options);
+    struct voxel_block *block = &volume->uniforms;
+    block->first_level = first;
+    block->end_level = end;
+    gpu_buffer_write(volume->block, offsetof(struct voxel_block, first_level),
+                     sizeof(block->first_level) + sizeof(block->end_level), &block->first_level);
 }

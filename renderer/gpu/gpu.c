@@ -11,7 +11,7 @@
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu/timer.h"
-#include "shared/bindings.h"
+#include "shared/slots.h"
 
 #define GL_FENCE_WAIT_NS 2000000000ull
 
@@ -43,7 +43,7 @@ static void read_info(struct gpu *gpu)
     info->max_texture_edge = (uint32_t)edge;
 }
 
-// GL limits that the shaders rely on (shaders/shared/bindings.h), all guaranteed or near by 4.5.
+// GL limits that the shaders rely on (shaders/shared/slots.h), all guaranteed or near by 4.5.
 static bool check_limits(struct error *out_error)
 {
     static const struct {

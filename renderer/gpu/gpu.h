@@ -53,7 +53,7 @@ void gpu_finish(struct gpu *gpu);
 void gpu_push_group(struct gpu *gpu, const char *name);
 void gpu_pop_group(struct gpu *gpu);
 
-// Bindings; slots are those of shaders/shared/bindings.h.
+// Bindings; slots are those of shaders/shared/slots.h.
 void gpu_bind_storage(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer);
 void gpu_bind_uniforms(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer);
 void gpu_bind_texture(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture);

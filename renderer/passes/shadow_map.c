@@ -80,7 +80,7 @@ void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *b
 {
     const struct view *view = frame->view;
     uint32_t sun = frame->resident->sun_shadow_view;
-    block->options[1] = sun;
+    block->sun_shadow_view = sun;
     for (uint32_t i = 0; i < view->cascade_count; i++) {
         mat4 scene, cascade;
         memcpy(scene, frame->resident->shadow_views[sun].clip_from_world, sizeof(scene));
@@ -94,11 +94,11 @@ void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *b
             float scale = cascade[column][row] / scene[column][row];
             float offset = cascade[3][row] - scale * scene[3][row];
             // From clip space to uv: u = 0.5 + 0.5 x, v = 0.5 - 0.5 y; depth is z itself.
-            block->cascade_scales[i][row] = scale;
-            block->cascade_offsets[i][row] =
+            block->cascades[i].scale[row] = scale;
+            block->cascades[i].offset[row] =
                 row == 2 ? offset : 0.5f - 0.5f * scale + (row == 0 ? 0.5f : -0.5f) * offset;
         }
-        block->cascade_scales[i][3] =
+        block->cascades[i].layer =
             (float)shadow_map_cascade_layer(frame->resident->shadow_map, view->cascade_numbers[i]);
     }
 }

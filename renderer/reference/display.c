@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "shared/bindings.h"
+#include "shared/work_groups.h"
 
 // As shaders/post/exposure.comp.
 #define LOWEST_STOP     -24.0f

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "renderer/reference/light_grid.h"
-#include "shared/bindings.h"
+#include "shared/frame_block.h"
 
 // Of more lights than these, a grid tells which reach a point.
 #define FEW_PUNCTUALS 8u
@@ -57,7 +57,7 @@ static void add_punctual(struct lights *lights, const struct snapshot *snapshot,
     float inner = cosf(light->inner_cone_rad), outer = cosf(light->outer_cone_rad);
     bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
     float scale = 1.0f / max1(0.001f, inner - outer);
-    float least_m = fminf(LAMP_LEAST_SHARE * snapshot->diagonal_m, LAMP_LEAST_M);
+    float least_m = fminf(LIGHT_MIN_DISTANCE_FRACTION * snapshot->diagonal_m, LIGHT_MIN_DISTANCE_M);
     lights->punctuals[lights->punctual_count++] = (struct punctual){
         .position = load3(position),
         .direction = load3(direction),

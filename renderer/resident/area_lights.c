@@ -86,11 +86,11 @@ static void write_light(struct area_light_block *light, float corners[4][3],
         for (int axis = 0; axis < 3; axis++)
             light->center[axis] += 0.25f * corners[i][axis];
     }
-    light->corners[0][3] = both_sides ? 1.0f : 0.0f;
+    light->two_sided = both_sides;
     memcpy(light->radiance, radiance, sizeof(vec3));
-    light->radiance[3] = area;
+    light->area_m2 = area;
     glm_vec3_scale(half, (mirrored ? -1.0f : 1.0f) / area, light->normal);
-    light->shadow[0] = NO_SHADOW;
+    light->shadow.first_view = NO_SHADOW;
 }
 
 static uint32_t add_instance(const struct resident *resident,
@@ -162,11 +162,11 @@ uint32_t resident_find_area_lights(struct resident *resident,
         count = add_instance(resident, instance, material, count, out_lights);
         float area = 0.0f;
         for (uint32_t j = first; j < count; j++)
-            area += out_lights[j].radiance[3];
+            area += out_lights[j].area_m2;
         instance->emits_directly = true;
         instance->large_emitter = area >= large;
         for (uint32_t j = first; j < count && instance->large_emitter; j++)
-            out_lights[j].center[3] = 1.0f;
+            out_lights[j].in_voxels = 1;
         resident->counts.large_area_lights += instance->large_emitter ? count - first : 0;
     }
     return count;

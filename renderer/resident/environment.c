@@ -5,17 +5,16 @@
 #include <string.h>
 
 #include "renderer/resident/resident.h"
-#include "shaders/shared/bindings.h"
+#include "shared/environment_block.h"
 
-#define LEVEL_COUNT         6u
-#define LEVEL_EDGE          64u
-#define LEVEL_SAMPLES       96u
-#define SH_SAMPLE_ROWS      64u
-#define MAX_RADIANCE        60000.0f // of RGBA16F texels, before intensity
-#define ENVIRONMENT_VECTORS 13u
-#define BRDF_EDGE           ((uint32_t)ENVIRONMENT_BRDF_EDGE)
-#define BRDF_SAMPLES        256u
-#define BRDF_MIN_COSINE     1e-3f
+#define LEVEL_COUNT     6u
+#define LEVEL_EDGE      64u
+#define LEVEL_SAMPLES   96u
+#define SH_SAMPLE_ROWS  64u
+#define MAX_RADIANCE    60000.0f // of RGBA16F texels, before intensity
+#define BRDF_EDGE       ((uint32_t)ENVIRONMENT_BRDF_EDGE)
+#define BRDF_SAMPLES    256u
+#define BRDF_MIN_COSINE 1e-3f
 
 // Radiance from a direction, of an unrotated environment of intensity 1.
 static void sample_environment(const struct scene_environment *environment, const float d[3],
@@ -49,7 +48,8 @@ static void sample_environment(const struct scene_environment *environment, cons
 
 // Projects onto bands 0 to 2 and folds in the clamped cosine over pi (Ramamoorthi and Hanrahan
 // 2001: A0 = pi, A1 = 2 pi / 3, A2 = pi / 4), so that a shader only evaluates a polynomial.
-static void project_harmonics(const struct scene_environment *environment, vec4 out_vectors[9])
+static void project_harmonics(const struct scene_environment *environment,
+                              vec4 out_vectors[ENVIRONMENT_SH_COEFFICIENTS])
 {
     const uint32_t rows = SH_SAMPLE_ROWS, columns = 2 * SH_SAMPLE_ROWS;
     double sums[9][3] = {{0}};
@@ -163,7 +163,7 @@ static void integrate_brdf(float roughness, float n_v, float out_scale_bias[2])
     out_scale_bias[1] = (float)(bias / BRDF_SAMPLES);
 }
 
-// Fills the nodes as `shaders/lib/environment.glsl` describes them.
+// Fills the nodes as `shaders/shared/environment_block.h` describes them.
 static void tabulate_brdf(vec4 *nodes)
 {
     for (uint32_t i = 0; i < BRDF_EDGE * BRDF_EDGE; i++) {
@@ -246,22 +246,22 @@ static bool same_pictures(const struct scene_environment *a, const struct scene_
 bool resident_upload_environment(struct resident *resident)
 {
     const struct scene_environment *environment = &resident->scene->environment;
-    vec4 vectors[ENVIRONMENT_VECTORS + ENVIRONMENT_BRDF_EDGE * ENVIRONMENT_BRDF_EDGE] = {{0}};
+    struct environment_block block = {0};
     if (environment->type != SCENE_ENVIRONMENT_NONE)
-        project_harmonics(environment, vectors);
-    tabulate_brdf(vectors + ENVIRONMENT_VECTORS); // reflections of voxels need it, too
-    vectors[9][0] = (float)environment->type;
-    vectors[9][1] = (float)LEVEL_COUNT;
+        project_harmonics(environment, block.irradiance_sh);
+    tabulate_brdf(block.brdf_nodes); // reflections of voxels need it, too
+    block.equirectangular = environment->type == SCENE_ENVIRONMENT_EQUIRECT;
+    block.level_count = (float)LEVEL_COUNT;
     bool gradient = environment->type == SCENE_ENVIRONMENT_GRADIENT;
     for (int c = 0; c < 3 && environment->type != SCENE_ENVIRONMENT_NONE; c++) {
-        vectors[10][c] = environment->color[c];
-        vectors[11][c] = gradient ? environment->horizon_color[c] : environment->color[c];
-        vectors[12][c] = gradient ? environment->ground_color[c] : environment->color[c];
+        block.zenith[c] = environment->color[c];
+        block.horizon[c] = gradient ? environment->horizon_color[c] : environment->color[c];
+        block.ground[c] = gradient ? environment->ground_color[c] : environment->color[c];
     }
     if (!gpu_buffer_ensure(resident->gpu, &resident->environment, "environment", GPU_BUFFER_STATIC,
-                           sizeof(vectors)))
+                           sizeof(block)))
         return false;
-    gpu_buffer_write(resident->environment, 0, sizeof(vectors), vectors);
+    gpu_buffer_write(resident->environment, 0, sizeof(block), &block);
     // Intensity and rotation are uniforms: the pictures need not be made again for them.
     const struct scene_environment *seen = &resident->environment_seen;
     if (resident->environment_levels && same_pictures(seen, environment))

@@ -143,7 +143,7 @@ static void fill_instance_block(struct instance_block *block, const float matrix
     memcpy(block->world_from_local, matrix, sizeof(block->world_from_local));
     mat3 linear;
     glm_mat4_pick3(block->world_from_local, linear);
-    block->info[3] = glm_mat3_det(linear) < 0.0f ? INSTANCE_MIRRORED : 0;
+    block->flags = glm_mat3_det(linear) < 0.0f ? INSTANCE_MIRRORED : 0;
 }
 
 static uint8_t group_of(const struct scene_material *material, bool mirrored)
@@ -168,12 +168,12 @@ static void place_instance(struct resident *resident, struct resident_instance *
     memcpy(instance->world_from_local, node->world_from_local, sizeof(node->world_from_local));
     resident_place(resident, node->world_from_local + 12, instance->world_from_local + 12);
     fill_instance_block(block, instance->world_from_local);
-    block->info[0] = instance->index_first;
-    block->info[1] = primitive->material;
-    block->info[2] = instance->first_id;
+    block->first_index = instance->index_first;
+    block->material = primitive->material;
+    block->first_visibility_id = instance->first_id;
     instance->visible = node->world_visible && instance->index_count > 0;
     instance->group =
-        group_of(&scene->materials[primitive->material], (block->info[3] & INSTANCE_MIRRORED) != 0);
+        group_of(&scene->materials[primitive->material], (block->flags & INSTANCE_MIRRORED) != 0);
     instance->scale = 0.0f;
     for (int column = 0; column < 3; column++)
         instance->scale =

@@ -45,9 +45,9 @@ static void add_perspective_view(struct light_builder *builder, const float orig
     *view = (struct shadow_view_block){0};
     float near_m = resident_shadow_near_m(builder->resident);
     perspective_from(origin, forward, up, fov_rad, near_m, view->clip_from_world);
-    view->texel[0] = 2.0f * tanf(0.5f * fov_rad) / (float)SHADOW_MAP_EDGE;
-    view->texel[3] = 1.0f;
-    view->depth[0] = near_m;
+    view->texel_m = 2.0f * tanf(0.5f * fov_rad) / (float)SHADOW_MAP_EDGE;
+    view->perspective = 1;
+    view->depth_range_m = near_m;
 }
 
 static void add_cube_views(struct light_builder *builder, const float origin[3])
@@ -94,8 +94,8 @@ void resident_directional_view(const struct resident *resident, const float axis
     clip_from_view[3][2] = (float)(0.5 - 0.5 * (high[2] + low[2]) / size[2]);
     clip_from_view[3][3] = 1.0f;
     glm_mat4_mul(clip_from_view, view_from_world, out_view->clip_from_world);
-    out_view->texel[0] = (float)(fmax(size[0], size[1]) / SHADOW_MAP_EDGE);
-    out_view->depth[0] = (float)size[2];
+    out_view->texel_m = (float)(fmax(size[0], size[1]) / SHADOW_MAP_EDGE);
+    out_view->depth_range_m = (float)size[2];
 }
 
 static bool light_is_lit(const struct scene *scene, const struct scene_light *light)
@@ -114,32 +114,33 @@ static void fill_light_block(struct light_block *block, const struct resident *r
     *block = (struct light_block){0};
     scene_get_light_placement(scene, id, block->position, block->direction);
     resident_place(resident, block->position, block->position);
-    static const float types[] = {
+    static const uint32_t types[] = {
         [SCENE_LIGHT_DIRECTIONAL] = LIGHT_DIRECTIONAL,
         [SCENE_LIGHT_POINT] = LIGHT_POINT,
         [SCENE_LIGHT_SPOT] = LIGHT_SPOT,
     };
-    block->position[3] = types[light->type];
-    block->direction[3] = light->type == SCENE_LIGHT_DIRECTIONAL ? 0.0f : light->range_m;
+    block->type = types[light->type];
+    block->range_m = light->type == SCENE_LIGHT_DIRECTIONAL ? 0.0f : light->range_m;
     for (int c = 0; c < 3; c++)
-        block->radiance[c] = light->color[c] * light->intensity;
-    block->radiance[3] = light->radius_m;
+        block->intensity[c] = light->color[c] * light->intensity;
+    block->radius_m = light->radius_m;
     float inner = cosf(light->inner_cone_rad), outer = cosf(light->outer_cone_rad);
-    block->cone[0] = 1.0f / fmaxf(0.001f, inner - outer);
-    block->cone[1] = -outer * block->cone[0];
-    block->cone[2] = outer;
-    block->shadow[0] = NO_SHADOW;
-    block->shadow[2] = id;
+    block->cone_scale = 1.0f / fmaxf(0.001f, inner - outer);
+    block->cone_offset = -outer * block->cone_scale;
+    block->cos_outer_cone = outer;
+    block->shadow.first_view = NO_SHADOW;
+    block->shadow.light_id = id;
 }
 
 // Whether one shadow map does for both: the same kind of lamp in the same place, which shines the
 // same way.
 static bool shares_shadow(const struct light_block *a, const struct light_block *b)
 {
-    bool turned = memcmp(a->direction, b->direction, sizeof(vec3)) != 0 || a->cone[2] != b->cone[2];
+    bool turned = memcmp(a->direction, b->direction, sizeof(vec3)) != 0 ||
+                  a->cos_outer_cone != b->cos_outer_cone;
     bool moved = memcmp(a->position, b->position, sizeof(vec3)) != 0;
-    return a->position[3] == b->position[3] && (!moved || a->position[3] == LIGHT_DIRECTIONAL) &&
-           (!turned || a->position[3] == LIGHT_POINT);
+    return a->type == b->type && (!moved || a->type == LIGHT_DIRECTIONAL) &&
+           (!turned || a->type == LIGHT_POINT);
 }
 
 static bool share_shadow(const struct light_builder *builder, struct light_block *block)
@@ -148,9 +149,9 @@ static bool share_shadow(const struct light_builder *builder, struct light_block
         const struct light_block *owner = builder->owners[i];
         if (!owner || !shares_shadow(owner, block))
             continue;
-        block->shadow[0] = owner->shadow[0];
-        block->shadow[1] = owner->shadow[1];
-        block->shadow[3] = owner->shadow[3];
+        uint32_t id = block->shadow.light_id;
+        block->shadow = owner->shadow;
+        block->shadow.light_id = id;
         return true;
     }
     return false;
@@ -173,18 +174,18 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
         return;
     }
     builder->owners[builder->layers] = block;
-    block->shadow[0] = builder->layers;
-    block->shadow[1] = needed;
+    block->shadow.first_view = builder->layers;
+    block->shadow.view_count = needed;
     resident->counts.flat_shadows += needed == 1;
     resident->counts.cube_shadows += needed == 6;
     if (directional) {
         resident_directional_view(resident, block->direction, resident->bounds_min,
                                   resident->bounds_max, &builder->views[builder->layers++]);
         if (resident->directional_light == NO_SHADOW) {
-            resident->directional_light = block->shadow[2];
-            resident->sun_shadow_view = block->shadow[0];
+            resident->directional_light = block->shadow.light_id;
+            resident->sun_shadow_view = block->shadow.first_view;
             memcpy(resident->directional_axis, block->direction, sizeof(vec3));
-            block->shadow[3] = 1;
+            block->shadow.has_cascades = 1;
         }
     } else if (spot) {
         vec3 up = {0.0f, 1.0f, 0.0f};
@@ -198,17 +199,17 @@ static void add_light_shadow(struct light_builder *builder, struct light_block *
 
 static void add_area_light_shadow(struct light_builder *builder, struct area_light_block *light)
 {
-    light->shadow[0] = NO_SHADOW;
+    light->shadow.first_view = NO_SHADOW;
     if (builder->layers + 6 > MAX_SHADOW_LAYERS) {
         builder->resident->counts.unshadowed++;
         return;
     }
-    light->shadow[0] = builder->layers;
-    light->shadow[1] = 6;
+    light->shadow.first_view = builder->layers;
+    light->shadow.view_count = 6;
     builder->resident->counts.cube_shadows++;
     // A little before the emitter, so that it does not shade itself.
     vec3 origin;
-    float lift = 1e-3f * sqrtf(light->radiance[3]);
+    float lift = 1e-3f * sqrtf(light->area_m2);
     glm_vec3_scale(light->normal, lift, origin);
     glm_vec3_add(origin, light->center, light->center);
     add_cube_views(builder, light->center);
@@ -266,7 +267,7 @@ bool resident_upload_lights(struct resident *resident)
                 struct light_block *block = &lights[counts->lights++];
                 fill_light_block(block, resident, i);
                 add_light_shadow(builder, block, light);
-                counts->ranged_lights += block->direction[3] > 0.0f;
+                counts->ranged_lights += block->range_m > 0.0f;
             }
             for (uint32_t i = 0; round == 0 && i < counts->area_lights; i++)
                 add_area_light_shadow(builder, &area_lights[i]);

@@ -42,7 +42,7 @@ static void fill_texture_block(const struct texture_space *space, struct texture
         .uv_row_v = {-s * texture->scale[0], c * texture->scale[1], texture->offset[1]},
     };
     uint32_t edge_log2 = log2_of(gpu_texture_edge(space->classes[place->class_number]));
-    block->info[0] =
+    block->sampling =
         (texture->uv_set == 1 ? TEXTURE_UV_SET_1 : 0) | (texture->nearest ? TEXTURE_NEAREST : 0) |
         ((uint32_t)texture->wrap_u << TEXTURE_WRAP_U_BIT) |
         ((uint32_t)texture->wrap_v << TEXTURE_WRAP_V_BIT) | (edge_log2 << TEXTURE_EDGE_BIT) |
@@ -52,8 +52,8 @@ static void fill_texture_block(const struct texture_space *space, struct texture
 // glTF 2.0: green is roughness, blue metallic.
 static void scale_means(struct material_block *block, const struct image_place *map)
 {
-    block->means[0] *= map->mean[2];
-    block->means[1] *= map->mean[1];
+    block->mean_metallic *= map->mean[2];
+    block->mean_roughness *= map->mean[1];
 }
 
 static void fill_material_block(struct material_block *block, const struct scene_material *material)
@@ -64,29 +64,29 @@ static void fill_material_block(struct material_block *block, const struct scene
         block->specular_color[c] = material->specular_color[c];
         block->attenuation_color[c] = material->attenuation_color[c];
     }
-    block->emission[3] = material->alpha_cutoff;
-    block->attenuation_color[3] = material->ior;
-    block->surface[0] = material->metallic;
-    block->surface[1] = material->roughness;
-    block->surface[2] = material->normal_scale;
-    block->surface[3] = material->occlusion_strength;
-    block->dielectric[0] = f0_from_ior(material->ior);
-    block->dielectric[1] = material->specular;
-    block->dielectric[2] = material->transmission;
-    block->dielectric[3] = material->thickness_m;
-    block->specular_color[3] = material->attenuation_distance_m;
-    block->means[0] = material->metallic;
-    block->means[1] = material->roughness;
+    block->alpha_cutoff = material->alpha_cutoff;
+    block->ior = material->ior;
+    block->metallic = material->metallic;
+    block->roughness = material->roughness;
+    block->normal_scale = material->normal_scale;
+    block->occlusion_strength = material->occlusion_strength;
+    block->f0 = f0_from_ior(material->ior);
+    block->specular = material->specular;
+    block->transmission = material->transmission;
+    block->thickness_m = material->thickness_m;
+    block->attenuation_distance_m = material->attenuation_distance_m;
+    block->mean_metallic = material->metallic;
+    block->mean_roughness = material->roughness;
     static const uint32_t shading[] = {
         [SCENE_SHADING_PBR] = SHADE_PBR,
         [SCENE_SHADING_BLINN_PHONG] = SHADE_BLINN_PHONG,
         [SCENE_SHADING_UNLIT] = SHADE_UNLIT,
     };
-    block->info[0] = shading[material->shading] |
-                     (material->alpha_mode == SCENE_ALPHA_BLEND ? MATERIAL_ALPHA_BLEND : 0) |
-                     (material->alpha_mode == SCENE_ALPHA_MASK ? MATERIAL_ALPHA_MASK : 0) |
-                     (material->double_sided ? MATERIAL_DOUBLE_SIDED : 0) |
-                     (material->ior == 1.0f ? MATERIAL_IOR_ONE : 0);
+    block->flags = shading[material->shading] |
+                   (material->alpha_mode == SCENE_ALPHA_BLEND ? MATERIAL_ALPHA_BLEND : 0) |
+                   (material->alpha_mode == SCENE_ALPHA_MASK ? MATERIAL_ALPHA_MASK : 0) |
+                   (material->double_sided ? MATERIAL_DOUBLE_SIDED : 0) |
+                   (material->ior == 1.0f ? MATERIAL_IOR_ONE : 0);
 }
 
 bool resident_upload_materials(struct resident *resident)
@@ -101,12 +101,12 @@ bool resident_upload_materials(struct resident *resident)
     for (uint32_t i = 0; done && i < scene->material_count; i++) {
         const struct scene_material *material = &scene->materials[i];
         fill_material_block(&materials[i], material);
-        materials[i].info[1] = i * TEXTURE_SLOTS;
+        materials[i].first_texture = i * TEXTURE_SLOTS;
         for (int slot = 0; slot < SCENE_TEXTURE_SLOT_COUNT; slot++) {
             if (material->textures[slot].image >= scene->image_count)
                 continue;
             const struct scene_texture *texture = &material->textures[slot];
-            materials[i].info[2] |= 1u << slot;
+            materials[i].texture_mask |= 1u << slot;
             if (slot == SCENE_TEXTURE_METALLIC_ROUGHNESS)
                 scale_means(&materials[i],
                             &resident->texture_spaces[TEXTURE_SPACE_DATA].places[texture->image]);

@@ -7,8 +7,17 @@
 #include "renderer/gpu/gpu.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/resident/shadow_layers.h"
-#include "shared/bindings.h"
-#include "shared/blocks.h"
+#include "shared/area_light_block.h"
+#include "shared/bvh.h"
+#include "shared/frame_block.h"
+#include "shared/instance_block.h"
+#include "shared/light_block.h"
+#include "shared/material_block.h"
+#include "shared/ray_accumulation.h"
+#include "shared/slots.h"
+#include "shared/texture_block.h"
+#include "shared/vertex.h"
+#include "shared/work_groups.h"
 
 #define SHADOW_MAP_EDGE 2048u
 // Nearest shadow caster of a lamp, relative to the scene's diagonal; and the most it is in m, or

@@ -7,7 +7,7 @@
 struct resident;
 
 struct triangle_tree {
-    struct gpu_texture *nodes;     // layouts: see TREE_ in shaders/shared/bindings.h
+    struct gpu_texture *nodes;     // layouts: see TREE_ in shaders/shared/bvh.h
     struct gpu_texture *triangles; // in world space, relative to `center`
     float center[3];
     uint32_t triangle_count;

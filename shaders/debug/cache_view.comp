@@ -22,12 +22,12 @@ const float DARKEST = 0.35;
 // if there is none.
 uint record_at(vec3 world, vec3 normal)
 {
-    vec3 position = world - voxels.anchor.xyz;
+    vec3 position = world - voxels.anchor;
     float room;
     uint level = cache_level(position, room);
-    if (level >= voxels.shape.x)
+    if (level >= voxels.cell_level_count)
         return VOXEL_NONE;
-    uint cell = find_cell(level, ivec3(floor(position * voxels.levels[level].size.y)));
+    uint cell = find_cell(level, ivec3(floor(position * voxels.levels[level].inverse_voxel_edge)));
     if (cell == VOXEL_NONE)
         return VOXEL_NONE;
     uint found = VOXEL_NONE;
@@ -50,14 +50,14 @@ vec3 cache_color(surface s)
         return vec3(0.25);
     uint state = faces[words + FACE_STATE];
     vec3 color = vec3(0.2, 0.8, 0.25);
-    if ((state & 0xffffu) != voxels.cache.x)
+    if ((state & 0xffffu) != voxels.cache_generation)
         color = vec3(0.95, 0.8, 0.15);
-    if ((state >> FACE_EPOCH_BIT) != voxels.shape.w)
+    if ((state >> FACE_EPOCH_BIT) != voxels.geometry_epoch)
         color = vec3(0.9, 0.2, 0.15);
     if ((state & FACE_MARCHED) == 0u)
         color = (state & FACE_VALID) != 0u ? vec3(0.35, 0.75, 0.95) : vec3(0.15, 0.25, 0.95);
     uint asked = faces[words + FACE_REQUEST];
-    float age = asked == 0u ? 1.0 : min(float(voxels.cache.y - asked) / REQUEST_FRAMES, 1.0);
+    float age = asked == 0u ? 1.0 : min(float(voxels.frame_number - asked) / REQUEST_FRAMES, 1.0);
     return color * mix(1.0, DARKEST, age);
 }
 #else
@@ -70,7 +70,7 @@ vec3 cache_color(surface s)
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     surface s = gbuffer_load(pixel);
     vec3 color = s.shading < SHADE_UNLIT ? cache_color(s) : vec3(0.0);

@@ -46,28 +46,28 @@ vec3 heat(float x)
 uint lights_of_tile(uvec2 pixel)
 {
 #if LIGHT_TILES
-    uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.size.z + pixel.x / LIGHT_TILE_EDGE;
+    uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.tile_count.x + pixel.x / LIGHT_TILE_EDGE;
     uint count = 0u;
-    for (uint word = 0u; word < frame.lights.z; word++)
-        count += uint(bitCount(light_masks[tile * frame.lights.z + word]));
+    for (uint word = 0u; word < frame.light_mask_words; word++)
+        count += uint(bitCount(light_masks[tile * frame.light_mask_words + word]));
     return count;
 #else
-    return frame.lights.x;
+    return frame.light_count;
 #endif
 }
 
 vec3 cascade_color(surface s)
 {
 #if FLAT_SHADOWS
-    if (frame.lights.w == 0u)
+    if (frame.cascade_count == 0u)
         return vec3(0.35 + 0.65 * clamp(dot(s.normal, s.view), 0.0, 1.0));
-    uint view_number = frame.options.y;
+    uint view_number = frame.sun_shadow_view;
     shadow_place at =
         project_to_shadow(view_number, s.position, s.geometric_normal, s.geometric_normal);
     uint cascade = refine_by_cascade(at);
     const vec3 colors[4] = {vec3(1.0, 0.35, 0.3), vec3(0.4, 1.0, 0.4), vec3(0.4, 0.55, 1.0),
                             vec3(1.0, 0.9, 0.4)};
-    vec3 tint = cascade < frame.lights.w ? colors[cascade] : colors[3];
+    vec3 tint = cascade < frame.cascade_count ? colors[cascade] : colors[3];
     return tint * (0.35 + 0.65 * clamp(dot(s.normal, s.view), 0.0, 1.0));
 #else
     return vec3(0.35 + 0.65 * clamp(dot(s.normal, s.view), 0.0, 1.0));
@@ -76,7 +76,7 @@ vec3 cascade_color(surface s)
 
 vec3 debug_color(uvec2 pixel, surface s)
 {
-    switch (frame.options.x & 0xffu) {
+    switch (frame.debug_view) {
     case VIEW_ALBEDO:
         return transfer(s.base_color);
     case VIEW_NORMAL:
@@ -90,7 +90,7 @@ vec3 debug_color(uvec2 pixel, surface s)
     case VIEW_DEPTH: {
         float d = view_distance(texelFetch(depth_texture, ivec2(pixel), 0).r);
         // Near white, far black, half at a third of the scene's diagonal.
-        return vec3(1.0 / (1.0 + d / (0.33 * frame.environment.z)));
+        return vec3(1.0 / (1.0 + d / (0.33 * frame.scene_diagonal_m)));
     }
     case VIEW_IDS:
         return number_color(texelFetch(ids, ivec2(pixel), 0).r);
@@ -103,11 +103,11 @@ vec3 debug_color(uvec2 pixel, surface s)
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     surface s = gbuffer_load(pixel);
     vec3 color = vec3(0.0);
-    if ((frame.options.x & 0xffu) == VIEW_LIGHTS_PER_TILE)
+    if (frame.debug_view == VIEW_LIGHTS_PER_TILE)
         color = heat(float(lights_of_tile(pixel)) / 32.0);
     else if (s.shading != SHADE_BACKGROUND)
         color = debug_color(pixel, s);

@@ -4,16 +4,17 @@
 // TEXTURE 0: a buffer of records, of which masks tell the words that are floats and those of which
 // the low or the high half is a half float. TEXTURE 1, 2, 3: a 2D texture, an array, a 3D texture of
 // floats.
-#include "shared/bindings.h"
-#include "shared/types.h"
+#include "shared/finite_check.h"
+#include "shared/slots.h"
+#include "shared/work_groups.h"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
 layout(std430, binding = BIND_CHECK) buffer check_storage
 {
-    uvec4 shape; // words or texels, words of a record, result to write, level of a texture
-    uvec4 masks; // of a record's words: floats, low halves, high halves; the last bit tells of the rest
-    uvec4 results[]; // values that are not finite, the first, -, -
+    finite_check_shape shape;
+    finite_check_masks masks;
+    finite_check_result results[];
 } check;
 
 #if TEXTURE == 0
@@ -41,16 +42,16 @@ uint half_is_bad(uint bits)
 }
 
 // `shape` and `masks` are those of the block: storage is slow to read again for each word.
-uint count_bad(uint at, uvec4 shape, uvec4 masks)
+uint count_bad(uint at, finite_check_shape shape, finite_check_masks masks)
 {
 #if TEXTURE == 0
-    uint bit = 1u << min(at % shape.y, 31u);
+    uint bit = 1u << min(at % shape.record_words, 31u);
     uint word = words[at];
-    return ((masks.x & bit) != 0u ? float_is_bad(word) : 0u) +
-           ((masks.y & bit) != 0u ? half_is_bad(word) : 0u) +
-           ((masks.z & bit) != 0u ? half_is_bad(word >> 16) : 0u);
+    return ((masks.floats & bit) != 0u ? float_is_bad(word) : 0u) +
+           ((masks.low_halves & bit) != 0u ? half_is_bad(word) : 0u) +
+           ((masks.high_halves & bit) != 0u ? half_is_bad(word >> 16) : 0u);
 #else
-    int level = int(shape.w);
+    int level = int(shape.texture_level);
     uint width = uint(textureSize(checked, level).x);
     uint height = uint(textureSize(checked, level).y);
     ivec3 place = ivec3(at % width, at / width % height, at / width / height);
@@ -67,13 +68,14 @@ uint count_bad(uint at, uvec4 shape, uvec4 masks)
 
 void main()
 {
-    uvec4 shape = check.shape, masks = check.masks;
+    finite_check_shape shape = check.shape;
+    finite_check_masks masks = check.masks;
     uint stride = gl_NumWorkGroups.x * LINEAR_GROUP;
-    for (uint at = gl_GlobalInvocationID.x; at < shape.x; at += stride) {
+    for (uint at = gl_GlobalInvocationID.x; at < shape.length; at += stride) {
         uint bad = count_bad(at, shape, masks);
         if (bad > 0u) {
-            atomicAdd(check.results[shape.z].x, bad);
-            atomicMin(check.results[shape.z].y, at);
+            atomicAdd(check.results[shape.result].count, bad);
+            atomicMin(check.results[shape.result].first, at);
         }
     }
 }

@@ -11,7 +11,9 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 #if LAYERS
 layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
-    uvec4 fragment_counts;
+    uint fragment_count;    // met by rasterisation
+    uint fragment_capacity; // room for them
+    uint fragment_unused[2];
     uint fragment_words[]; // heads of the pixels' lists, 0: empty
 };
 #endif
@@ -28,7 +30,7 @@ uint pixel_classes(uvec2 pixel, surface s)
     uint classes = 0u;
     if (s.shading < SHADE_UNLIT) {
         bool reflects = s.metallic > 0.0 || s.f90 > 0.0;
-        classes = reflects && s.roughness <= frame.textures.w ? CLASS_GLOSSY : CLASS_MATTE;
+        classes = reflects && s.roughness <= frame.specular_max_roughness ? CLASS_GLOSSY : CLASS_MATTE;
     }
     if (s.shading != SHADE_BACKGROUND && any(greaterThan(s.emission, vec3(0.0))))
         classes = CLASS_EMISSIVE;
@@ -62,8 +64,8 @@ void main()
     if (gl_LocalInvocationIndex == 0u)
         tile_classes = 0u;
     barrier();
-    bool inside = all(lessThan(pixel, frame.size.xy));
-    surface s = gbuffer_load(min(pixel, frame.size.xy - 1u));
+    bool inside = all(lessThan(pixel, frame.render_size));
+    surface s = gbuffer_load(min(pixel, frame.render_size - 1u));
     if (inside)
         atomicOr(tile_classes, pixel_classes(pixel, s));
     barrier();

@@ -31,9 +31,9 @@ struct voxel_hit {
 // Light times depth, and depth.
 vec4 face_texel(uint level, ivec3 voxel, uint face)
 {
-    ivec4 texels = voxels.levels[level].texels;
+    ivec3 texels = voxels.levels[level].texel_origin;
     ivec3 address = slot_address(level, voxel_slot(level, voxel));
-    return texelFetch(voxel_radiance, texels.xyz + ivec3(texels.w * int(face), 0, 0) + address, 0);
+    return texelFetch(voxel_radiance, texels + ivec3(voxels.levels[level].face_stride * int(face), 0, 0) + address, 0);
 }
 
 float total_depth(uint level, ivec3 voxel)
@@ -59,11 +59,12 @@ voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
 {
     voxel_hit hit;
     hit.found = false;
-    ivec4 box = voxels.levels[level].origin;
+    ivec3 box = voxels.levels[level].origin;
+    int edge = voxels.levels[level].edge;
     direction = mix(direction, vec3(1e-9), lessThan(abs(direction), vec3(1e-9)));
     vec3 inverse = 1.0 / direction;
-    vec3 to_low = (vec3(box.xyz) - origin) * inverse;
-    vec3 to_high = (vec3(box.xyz + box.w) - origin) * inverse;
+    vec3 to_low = (vec3(box) - origin) * inverse;
+    vec3 to_high = (vec3(box + edge) - origin) * inverse;
     vec3 enter = min(to_low, to_high);
     vec3 leave = max(to_low, to_high);
     float start = max(max(enter.x, max(enter.y, enter.z)), 0.0);
@@ -71,11 +72,11 @@ voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
         return hit;
     hit.t = start;
     hit.side = greaterThanEqual(enter, vec3(start));
-    hit.voxel = clamp(ivec3(floor(origin + start * direction)), box.xyz, box.xyz + box.w - 1);
+    hit.voxel = clamp(ivec3(floor(origin + start * direction)), box, box + edge - 1);
     ivec3 step = ivec3(sign(direction));
     vec3 next = (vec3(hit.voxel + max(step, ivec3(0))) - origin) * inverse;
     ivec3 eye_voxel = ivec3(floor(origin));
-    for (int i = 0; i < 3 * box.w; i++) {
+    for (int i = 0; i < 3 * edge; i++) {
         bool far = any(greaterThan(abs(hit.voxel - eye_voxel), ivec3(1)));
         if (far && is_occupied(level, hit.voxel)) {
             hit.found = true;
@@ -164,10 +165,10 @@ vec3 face_color(uint level, ivec3 voxel, uint face, uint words)
     return octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL])) * 0.5 + 0.5;
 #elif SHOW == 3
     vec4 texel = face_texel(level, voxel, face);
-    return texel.rgb * (voxels.anchor.w / texel.a);
+    return texel.rgb * (voxels.radiance_scale / texel.a);
 #else
     bool known = (faces[words + FACE_STATE] & FACE_VALID) != 0u;
-    return known ? face_light(words).rgb * voxels.anchor.w : vec3(0.0);
+    return known ? face_light(words).rgb * voxels.radiance_scale : vec3(0.0);
 #endif
 }
 
@@ -192,7 +193,7 @@ vec3 shown_color(uint level, voxel_hit hit, vec3 direction)
 #if !CELLS && !FROM_TEXTURE
     return checker(hit.voxel);
 #else
-    uint chosen = (frame.options.x >> 16) & 7u;
+    uint chosen = frame.debug_face;
     uint cell = VOXEL_NONE;
 #if CELLS
     cell = find_cell(level, hit.voxel);
@@ -211,18 +212,18 @@ vec3 shown_color(uint level, voxel_hit hit, vec3 direction)
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
-    uint level = (frame.options.x >> 8) & 0xffu;
-    float inverse = voxels.levels[level].size.y;
+    uint level = frame.debug_level;
+    float inverse = voxels.levels[level].inverse_voxel_edge;
     vec3 direction = ray_direction(vec2(pixel)) * inverse;
-    voxel_hit hit = march_voxels(level, (frame.eye.xyz - voxels.anchor.xyz) * inverse, direction);
+    voxel_hit hit = march_voxels(level, (frame.eye - voxels.anchor) * inverse, direction);
     vec3 color = vec3(0.0);
     if (hit.found) {
         color = shown_color(level, hit, normalize(direction));
 #if !IS_LIGHT
-        color *= block_shade(hit, 1.0 / max(hit.t * length(frame.ray_dx.xyz) * inverse, 1e-6));
+        color *= block_shade(hit, 1.0 / max(hit.t * length(frame.ray_dx) * inverse, 1e-6));
 #endif
     }
-    radiance[pixel.y * frame.size.x + pixel.x] = vec4(color, 1.0);
+    radiance[pixel.y * frame.render_size.x + pixel.x] = vec4(color, 1.0);
 }

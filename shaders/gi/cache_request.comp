@@ -9,11 +9,11 @@ const uint REQUEST_EDGE = 4u;
 
 void main()
 {
-    uint turn = (voxels.cache.y * 5u) & 15u;
+    uint turn = (voxels.frame_number * 5u) & 15u;
     uvec2 pixel = gl_GlobalInvocationID.xy * REQUEST_EDGE + uvec2(turn & 3u, turn >> 2);
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     surface s = gbuffer_load(pixel);
     if (s.shading < SHADE_UNLIT)
-        request_faces(s.position, s.geometric_normal, voxels.cache.y);
+        request_faces(s.position, s.geometric_normal, voxels.frame_number);
 }

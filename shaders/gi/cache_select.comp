@@ -31,8 +31,8 @@ const uint LARGE_CHANGE = 2u; // of 63
 void enqueue(uint urgency, uint entry)
 {
     uint at = atomicAdd(counters[COUNTER_CACHE_CLASSES + urgency], 1u);
-    if (at < voxels.options.x)
-        queue[urgency * voxels.options.x + at] = entry;
+    if (at < voxels.list_capacity)
+        queue[urgency * voxels.list_capacity + at] = entry;
 }
 
 #if STAGE == 0
@@ -41,20 +41,20 @@ void main()
     uint number = gl_GlobalInvocationID.x;
     if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
         return;
-    uint cell = list_words[LIST_LIT * voxels.options.x + number];
+    uint cell = list_words[LIST_LIT * voxels.list_capacity + number];
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         uint words = cell_face(cell, face);
         if (words == VOXEL_NONE || faces[words + FACE_NORMAL] == VOXEL_NONE)
             continue;
         uint state = faces[words + FACE_STATE];
         bool marched = (state & FACE_MARCHED) != 0u;
-        bool fresh = marched && (state >> FACE_EPOCH_BIT) == voxels.shape.w;
-        bool lit = (state & 0xffffu) == voxels.cache.x;
+        bool fresh = marched && (state >> FACE_EPOCH_BIT) == voxels.geometry_epoch;
+        bool lit = (state & 0xffffu) == voxels.cache_generation;
         if (lit && fresh)
             continue;
         uint asked = faces[words + FACE_REQUEST];
-        bool seen = asked != 0u && voxels.cache.y - asked < REQUEST_FRAMES;
-        if (!seen && voxels.cache.w == 0u)
+        bool seen = asked != 0u && voxels.frame_number - asked < REQUEST_FRAMES;
+        if (!seen && voxels.multi_bounce == 0u)
             continue;
         if (!fresh)
             enqueue(!seen ? 2u : marched ? 1u : 0u, words);
@@ -87,9 +87,9 @@ void main()
         return;
     // The budget is in faces to march. Looking up hits is cheap and shows an edit everywhere, so it
     // has the first claim, but for a quarter.
-    uint to_march = count_classes(0u, CACHE_MARCH_CLASSES, voxels.options.x);
-    uint to_gather = count_classes(CACHE_MARCH_CLASSES, CACHE_CLASSES, voxels.options.x);
-    uint budget = voxels.cache.z;
+    uint to_march = count_classes(0u, CACHE_MARCH_CLASSES, voxels.list_capacity);
+    uint to_gather = count_classes(CACHE_MARCH_CLASSES, CACHE_CLASSES, voxels.list_capacity);
+    uint budget = voxels.trace_budget;
     uint gathered = min(to_gather, (budget - min(to_march, budget / 4u)) * CACHE_MARCH_COST);
     uint marched = min(to_march, budget - gathered / CACHE_MARCH_COST);
     set_arguments(COUNTER_MARCH, marched);

@@ -20,7 +20,7 @@ void main()
     uint number = gl_GlobalInvocationID.x;
     if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
         return;
-    uint cell = list_words[LIST_LIT * voxels.options.x + number];
+    uint cell = list_words[LIST_LIT * voxels.list_capacity + number];
     uint level = cells[cell * CELL_WORDS] >> CELL_LEVEL_BIT;
     ivec3 voxel = slot_voxel(level, cells[cell * CELL_WORDS] & CELL_SLOT_MASK);
     for (uint face = 0u; face < VOXEL_FACES; face++) {

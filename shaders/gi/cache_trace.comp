@@ -33,9 +33,9 @@ uint find_entry(uint number)
     if (number >= count)
         return VOXEL_NONE;
     for (;;) {
-        uint length = min(counters[COUNTER_CACHE_CLASSES + urgency], voxels.options.x);
+        uint length = min(counters[COUNTER_CACHE_CLASSES + urgency], voxels.list_capacity);
         if (number < length)
-            return queue[urgency * voxels.options.x + number];
+            return queue[urgency * voxels.list_capacity + number];
         number -= length;
         urgency++;
     }
@@ -60,7 +60,7 @@ void main()
     vec3 normal = octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL]));
     uint bits = faces[words + FACE_PLACE];
     vec3 place = vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0;
-    vec3 position = (corner + place) * voxels.levels[level].size.x;
+    vec3 position = (corner + place) * voxels.levels[level].voxel_edge_m;
     // Neighbours look in different directions, so that interpolation between them averages more.
     ivec3 odd = ivec3(corner) & 1;
     float angle = float(odd.x + 2 * odd.y + 4 * odd.z) * (PI / 4.0);
@@ -70,7 +70,7 @@ void main()
 #if MARCH
     gathered along = no_light();
 #endif
-    for (uint i = 0u; i < uint(voxels.march.z); i++) {
+    for (uint i = 0u; i < uint(voxels.cache_march.cone_count); i++) {
 #if MARCH
         uint hit;
         add_cone(g, i, along, hit);
@@ -96,13 +96,13 @@ void main()
         faces[words + FACE_SHOWN] = faces[words + FACE_LIGHT];
         faces[words + FACE_SHOWN + 1u] = packHalf2x16(vec2(light.b, max(found.openness, 0.001)));
     }
-    uint epoch = MARCH != 0 ? voxels.shape.w : state >> FACE_EPOCH_BIT;
-    faces[words + FACE_STATE] = voxels.cache.x |
+    uint epoch = MARCH != 0 ? voxels.geometry_epoch : state >> FACE_EPOCH_BIT;
+    faces[words + FACE_STATE] = voxels.cache_generation |
                                 (relative_change(before, light) << FACE_CHANGE_BIT) | FACE_VALID |
                                 FACE_MARCHED | (epoch << FACE_EPOCH_BIT);
     // What is darker than a hundredth of the brightest must not keep the whole from being done.
     float change = luminance(abs(light - before)) /
-                   max(luminance(light) + 0.01 * voxels.settle.x, 1e-9);
+                   max(luminance(light) + 0.01 * voxels.peak_radiance, 1e-9);
     atomicMax(counters[COUNTER_CACHE_CHANGE], floatBitsToUint(change));
     atomicMax(counters[COUNTER_CACHE_PEAK], floatBitsToUint(luminance(light)));
 }

@@ -42,7 +42,7 @@ void main()
 #if GLOSS
     vec4 mean = vec4(sum.rgb / max(sum.a, 1e-6), 1.0);
 #else
-    vec4 mean = sum / (weight * voxels.settle.y);
+    vec4 mean = sum / (weight * voxels.sample_count);
 #endif
     gathered_light[gathered_at(TO, uvec2(place))] = mean;
 }

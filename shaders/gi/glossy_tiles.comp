@@ -7,7 +7,10 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 layout(std430, binding = BIND_TILES) buffer tile_storage
 {
-    uvec4 tile_arguments; // groups in x, y, z; -
+    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_groups_y;
+    uint tile_groups_z;
+    uint tile_unused;
     uint tiles[];         // row * 65536 + column
 };
 
@@ -19,12 +22,12 @@ void main()
         any_glossy = 0u;
     barrier();
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (all(lessThan(pixel, frame.size.xy))) {
+    if (all(lessThan(pixel, frame.render_size))) {
         surface s = gbuffer_load(pixel);
         if (s.shading < SHADE_UNLIT && deserves_cone(s))
             atomicOr(any_glossy, 1u);
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u && any_glossy != 0u)
-        tiles[atomicAdd(tile_arguments.x, 1u)] = gl_WorkGroupID.y * 65536u + gl_WorkGroupID.x;
+        tiles[atomicAdd(tile_count, 1u)] = gl_WorkGroupID.y * 65536u + gl_WorkGroupID.x;
 }

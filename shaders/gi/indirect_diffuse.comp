@@ -26,7 +26,7 @@ void main()
     vec4 known = vec4(0.0);
     for (uint i = 0u; i < 4u; i++) {
         uvec2 pixel = first + uvec2(i & 1u, i >> 1);
-        if (any(greaterThanEqual(pixel, frame.size.xy)))
+        if (any(greaterThanEqual(pixel, frame.render_size)))
             continue;
         uint at = pixel_index(pixel);
 #if ALONE
@@ -37,7 +37,7 @@ void main()
             continue;
         bool shared_light = dot(s.geometric_normal, known_normal) > SHARED_COSINE &&
                             abs(dot(s.position - known_position, known_normal)) <
-                                SHARED_VOXELS * voxels.levels[0].size.x;
+                                SHARED_VOXELS * voxels.levels[0].voxel_edge_m;
         if (!shared_light) {
             known = cached_irradiance(s.position, s.geometric_normal);
             known_normal = s.geometric_normal;
@@ -53,7 +53,7 @@ vec4 found_at(uvec2 place)
 #if FILTERED
     return gathered_light[gathered_at(GATHERED_LIGHT_MEANS, place)];
 #else
-    return gathered_light[gathered_at(GATHERED_LIGHT, place)] / voxels.settle.y;
+    return gathered_light[gathered_at(GATHERED_LIGHT, place)] / voxels.sample_count;
 #endif
 }
 
@@ -75,7 +75,7 @@ vec4 upsampled_light(surface s, uvec2 pixel)
             continue;
         vec2 near = mix(1.0 - t, t, vec2(step));
         float off = abs(dot(other.position - s.position, s.geometric_normal)) *
-                    voxels.levels[0].size.y;
+                    voxels.levels[0].inverse_voxel_edge;
         float cosine = max(dot(other.normal, s.normal), 0.0);
         float w = (near.x * near.y + 1e-3) * exp(-4.0 * off) * pow(cosine, 8.0) + 1e-7;
         sum += w * found_at(uvec2(place));
@@ -88,7 +88,7 @@ vec4 upsampled_light(surface s, uvec2 pixel)
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     uint at = pixel_index(pixel);
 #if ALONE

@@ -13,7 +13,10 @@ layout(local_size_x = GROUP_EDGE / 2, local_size_y = GROUP_EDGE / 2) in;
 
 layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 {
-    uvec4 tile_arguments;
+    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_groups_y;
+    uint tile_groups_z;
+    uint tile_unused;
     uint tiles[];
 };
 
@@ -46,7 +49,7 @@ void main()
     vec3 light = vec3(0.0);
     for (uint i = 0u; i < 4u; i++) {
         uvec2 pixel = first + uvec2(i & 1u, i >> 1);
-        if (any(greaterThanEqual(pixel, frame.size.xy)))
+        if (any(greaterThanEqual(pixel, frame.render_size)))
             continue;
         surface s = gbuffer_load(pixel);
         if (s.shading >= SHADE_UNLIT || !deserves_cone(s))
@@ -63,6 +66,6 @@ void main()
         vec3 f0 = mix(s.f0, s.base_color, s.metallic);
         float f90 = mix(s.f90, 1.0, s.metallic);
         vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
-        radiance[pixel_index(pixel)].rgb += reflected * light * (SPECULAR_OCCLUSION * voxels.light.y);
+        radiance[pixel_index(pixel)].rgb += reflected * light * (SPECULAR_OCCLUSION * voxels.indirect_intensity);
     }
 }

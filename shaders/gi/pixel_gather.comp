@@ -16,19 +16,19 @@ void main()
         return;
     surface s = gbuffer_load(place * uint(GATHER_STEP));
     uint at = gathered_at(GATHERED_LIGHT, place);
-    bool first = voxels.settle.y <= 1.0;
+    bool first = voxels.sample_count <= 1.0;
     if (s.shading >= SHADE_UNLIT)
         return;
     // Four turns in a square of 2x2 pixels that change places from frame to frame: after four frames
     // every pixel has seen the same, and then the next four follow.
     uint order = (place.x & 1u) + 2u * (place.y & 1u);
-    float frame_number = voxels.settle.y - 1.0;
+    float frame_number = voxels.sample_count - 1.0;
     float turn = 2.0 * PI * fract((float(order) + frame_number) * 0.25 +
                                   floor(frame_number * 0.25) * 0.61803399);
     gather_cones g = begin_gather(voxel_position(s.position), s.normal, s.thin,
                                   vec2(cos(turn), sin(turn)));
     gathered found = no_light();
-    for (uint i = 0u; i < uint(MARCH_OF_SET.z); i++) {
+    for (uint i = 0u; i < uint(CONE_MARCH.cone_count); i++) {
         uint hit;
         add_cone(g, i, found, hit);
     }

@@ -21,7 +21,7 @@ void main()
     surface s = gbuffer_load(place * uint(GATHER_STEP));
     if (s.shading >= SHADE_UNLIT)
         return;
-    uint picture = uint(voxels.settle.y) - 1u;
+    uint picture = uint(voxels.sample_count) - 1u;
     vec3 u = ray_numbers(place, picture);
     vec2 disc = sqrt(u.x) * vec2(cos(2.0 * PI * u.y), sin(2.0 * PI * u.y));
     vec3 direction = frame_about(s.normal) * vec3(disc, sqrt(max(1.0 - u.x, 0.0)));
@@ -30,7 +30,7 @@ void main()
     if (dot(direction, s.geometric_normal) > 0.0) {
         ray_light found = light_along(tree_origin(s.position, s.geometric_normal), direction, u.z,
                                       vec2(0.0, RAY_SPREAD), RAY_ROUGHNESS, vec2(place));
-        light = vec4(found.radiance / voxels.anchor.w, min(found.distance_m / voxels.light.x, 1.0));
+        light = vec4(found.radiance / voxels.radiance_scale, min(found.distance_m / voxels.ao_radius_m, 1.0));
     }
     uint at = gathered_at(GATHERED_LIGHT, place);
     gathered_light[at] = (picture == 0u ? vec4(0.0) : gathered_light[at]) + light;

@@ -12,7 +12,10 @@ layout(local_size_x = GROUP_EDGE / GATHER_STEP, local_size_y = GROUP_EDGE / GATH
 
 layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 {
-    uvec4 tile_arguments;
+    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_groups_y;
+    uint tile_groups_z;
+    uint tile_unused;
     uint tiles[];
 };
 
@@ -46,14 +49,14 @@ void main()
     uvec2 first = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE +
                   gl_LocalInvocationID.xy * uint(GATHER_STEP);
     // Pixels of the square whose gloss wants rays have them in turns.
-    uint picture = uint(voxels.settle.y) - 1u;
+    uint picture = uint(voxels.sample_count) - 1u;
     bool wanted = false;
     uvec2 pixel = first;
     surface s;
     for (uint i = 0u; i < uint(GATHER_STEP * GATHER_STEP) && !wanted; i++) {
         uint turn = (i + picture) % uint(GATHER_STEP * GATHER_STEP);
         pixel = first + uvec2(turn % uint(GATHER_STEP), turn / uint(GATHER_STEP));
-        if (any(greaterThanEqual(pixel, frame.size.xy)))
+        if (any(greaterThanEqual(pixel, frame.render_size)))
             continue;
         s = gbuffer_load(pixel);
         wanted = s.shading < SHADE_UNLIT && deserves_cone(s);
@@ -68,7 +71,7 @@ void main()
     vec3 view = s.view * axes;
     view = normalize(vec3(view.xy, max(view.z, 1e-3)));
     vec2 spread = vec2(gathered_pixel_m(s),
-                       length(frame.ray_dx.xyz) * float(GATHER_STEP) + 0.25 * alpha);
+                       length(frame.ray_dx) * float(GATHER_STEP) + 0.25 * alpha);
     vec3 u = ray_numbers(place, picture);
     vec3 facet = sample_visible_normal(view, alpha, u.xy);
     vec3 direction = axes * reflect(-view, facet);

@@ -24,7 +24,7 @@ void add_light(inout light_sum sum, surface s, vec3 light, vec3 place, float cha
     if (max(light.r, max(light.g, light.b)) <= 0.0)
         return;
     vec3 origin = tree_origin(s.position, s.geometric_normal);
-    vec3 way = place - frame.tree.xyz - origin;
+    vec3 way = place - frame.bvh_origin - origin;
     sum.whole += light;
     if (find_nearest(origin, way, REACH, chance).triangle == TREE_LEAF)
         sum.seen += light;
@@ -44,7 +44,7 @@ vec3 place_on(area_light_block light, surface s, vec3 u)
                         mix(light.corners[3].xyz, light.corners[2].xyz, at.x), at.y);
         vec3 way = places[i] - s.position;
         float squared = max(dot(way, way), 1e-30);
-        weights[i] = max(dot(way, s.normal), 0.0) * abs(dot(way, light.normal.xyz)) /
+        weights[i] = max(dot(way, s.normal), 0.0) * abs(dot(way, light.normal)) /
                      (squared * squared);
         sum += weights[i];
     }
@@ -60,7 +60,7 @@ vec3 share_of_lamps(surface s, vec3 u)
 {
     light_sum sum = light_sum(vec3(0.0), vec3(0.0));
 #if PUNCTUAL_LIGHTS
-    for (uint i = 0u; i < frame.lights.x; i++) {
+    for (uint i = 0u; i < frame.light_count; i++) {
         light_block light = lights[i];
         if (!has_size(light))
             continue;
@@ -70,14 +70,14 @@ vec3 share_of_lamps(surface s, vec3 u)
         float angle = 2.0 * PI * u.y;
         vec3 offset = frame_about(l) * vec3(cos(angle), sin(angle), 0.0);
         add_light(sum, s, unshadowed,
-                  light.position.xyz + offset * (sqrt(u.x) * light.radiance.w), u.z);
+                  light.position + offset * (sqrt(u.x) * light.radius_m), u.z);
         u = fract(u + NEXT_LAMP);
     }
 #endif
 #if AREA_LIGHTS
-    for (uint i = 0u; i < frame.lights.y; i++) {
+    for (uint i = 0u; i < frame.area_light_count; i++) {
         area_light_block light = area_lights[i];
-        if (light.shadow.x == NO_SHADOW)
+        if (light.shadow.first_view == NO_SHADOW)
             continue;
         add_light(sum, s, area_unshadowed(s, light), place_on(light, s, u), fract(16.0 * u.z));
         u = fract(u + NEXT_LAMP);
@@ -92,16 +92,16 @@ void main()
     if (any(greaterThanEqual(place, gathered_size())))
         return;
     const uint STEP = uint(GATHER_STEP);
-    uint picture = uint(voxels.settle.y) - 1u;
+    uint picture = uint(voxels.sample_count) - 1u;
     uint turn = picture % (STEP * STEP);
     if (picture == 0u)
         for (uint i = 0u; i < STEP * STEP; i++) {
             uvec2 other = place * STEP + uvec2(i % STEP, i / STEP);
-            if (all(lessThan(other, frame.size.xy)))
+            if (all(lessThan(other, frame.render_size)))
                 gathered_light[shares_at(other)] = vec4(0.0);
         }
     uvec2 pixel = place * STEP + uvec2(turn % STEP, turn / STEP);
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     surface s = gbuffer_load(pixel);
     if (s.shading >= SHADE_UNLIT)

@@ -81,7 +81,7 @@ vec3 specular_brdf_cosine(surface s, vec3 l, float alpha)
     if (n_l <= 0.0)
         return vec3(0.0);
 #if BLINN_PHONG
-    if (s.shading == SHADE_BLINN_PHONG || frame.display.w > 0.0) {
+    if (s.shading == SHADE_BLINN_PHONG || frame.all_blinn_phong != 0u) {
         float exponent = clamp(2.0 / (alpha * alpha) - 2.0, 1.0, 16384.0);
         return specular_fresnel(s, v_h) *
                ((exponent + 8.0) / (8.0 * PI) * pow(n_h, exponent) * n_l);

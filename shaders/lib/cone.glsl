@@ -40,7 +40,7 @@ const float WIDEST_STEP = 1.5;
 
 vec3 voxel_position(vec3 world)
 {
-    return world - voxels.anchor.xyz;
+    return world - voxels.anchor;
 }
 
 // How far inside a level a place is, in its voxels; negative outside what filtering can reach. Where
@@ -48,18 +48,18 @@ vec3 voxel_position(vec3 world)
 // a little aside.
 float inside_level(uint level, vec3 position)
 {
-    ivec4 origin = voxels.levels[level].origin;
-    vec3 at = position * voxels.levels[level].size.y - vec3(origin.xyz);
-    vec3 rim = min(at, float(origin.w) - at);
-    return min(rim.x, min(rim.y, rim.z)) - (0.5 + FACE_INSET) * float(voxels.levels[level].index.z);
+    ivec3 origin = voxels.levels[level].origin;
+    vec3 at = position * voxels.levels[level].inverse_voxel_edge - vec3(origin);
+    vec3 rim = min(at, float(voxels.levels[level].edge) - at);
+    return min(rim.x, min(rim.y, rim.z)) - (0.5 + FACE_INSET) * float(voxels.levels[level].wraps);
 }
 
 // Edge in m of the finest voxels that hold a place; those of the coarsest level beyond them all.
 float finest_voxel(vec3 position)
 {
-    float edge = voxels.levels[0].size.x;
-    for (uint level = 0u; level + 1u < voxels.shape.x && inside_level(level, position) < 0.0; level++)
-        edge = voxels.levels[level + 1u].size.x;
+    float edge = voxels.levels[0].voxel_edge_m;
+    for (uint level = 0u; level + 1u < voxels.cell_level_count && inside_level(level, position) < 0.0; level++)
+        edge = voxels.levels[level + 1u].voxel_edge_m;
     return edge;
 }
 
@@ -74,17 +74,17 @@ float cone_start(float usual, bool thin, vec3 normal)
 // Filtered light and optical depth across a voxel of a level, for a ray of the given direction.
 vec4 sample_level(uint level, vec3 position, vec3 direction)
 {
-    ivec4 origin = voxels.levels[level].origin;
-    ivec4 texels = voxels.levels[level].texels;
-    vec3 at = position * voxels.levels[level].size.y;
-    float edge = float(origin.w);
-    at = voxels.levels[level].index.z != 0u ? at - floor(at / edge) * edge : at - vec3(origin.xyz);
+    ivec3 origin = voxels.levels[level].origin;
+    ivec3 texels = voxels.levels[level].texel_origin;
+    vec3 at = position * voxels.levels[level].inverse_voxel_edge;
+    float edge = float(voxels.levels[level].edge);
+    at = voxels.levels[level].wraps != 0u ? at - floor(at / edge) * edge : at - vec3(origin);
     vec3 scale = 1.0 / vec3(textureSize(voxel_radiance, 0));
-    vec3 uvw = (at + vec3(texels.xyz)) * scale;
+    vec3 uvw = (at + vec3(texels)) * scale;
 #if VOXEL_DIRECTIONS == 1
     return textureLod(voxel_radiance, uvw, 0.0);
 #else
-    float face = float(texels.w) * scale.x;
+    float face = float(voxels.levels[level].face_stride) * scale.x;
     vec3 size = abs(direction);
     float x = direction.x > 0.0 ? face : 0.0;
     float y = direction.y > 0.0 ? 3.0 * face : 2.0 * face;
@@ -100,31 +100,31 @@ vec4 sample_level(uint level, vec3 position, vec3 direction)
 // that was read (the finer of two), or the number of levels beyond the coarsest.
 vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_level)
 {
-    float wanted = max(log2(diameter * voxels.levels[0].size.y), 0.0);
-    uint last = voxels.counts.x - 1u;
+    float wanted = max(log2(diameter * voxels.levels[0].inverse_voxel_edge), 0.0);
+    uint last = voxels.level_count - 1u;
     uint level = min(uint(wanted), last);
     float blend = min(wanted, float(last)) - float(level);
     float room = inside_level(level, position);
-    while (room < 0.0 && level < voxels.counts.x) {
+    while (room < 0.0 && level < voxels.level_count) {
         level++;
         blend = 0.0;
-        room = level < voxels.counts.x ? inside_level(level, position) : 0.0;
+        room = level < voxels.level_count ? inside_level(level, position) : 0.0;
     }
     out_level = level;
     if (level > last)
         return vec4(0.0);
     // Where a clip level ends, the next one fades in.
-    if (level + 1u < voxels.shape.x)
+    if (level + 1u < voxels.cell_level_count)
         blend = max(blend, 1.0 - room * 0.25);
 #if CONE_SMOOTH
-    vec4 fine = sample_level(level, position, direction) * voxels.levels[level].size.y;
+    vec4 fine = sample_level(level, position, direction) * voxels.levels[level].inverse_voxel_edge;
     uint coarser = min(level + 1u, last);
-    vec4 coarse = sample_level(coarser, position, direction) * voxels.levels[coarser].size.y;
+    vec4 coarse = sample_level(coarser, position, direction) * voxels.levels[coarser].inverse_voxel_edge;
     return mix(fine, coarse, level == last ? 0.0 : blend);
 #else
     if (blend > 0.5 && level < last)
         level++;
-    return sample_level(level, position, direction) * voxels.levels[level].size.y;
+    return sample_level(level, position, direction) * voxels.levels[level].inverse_voxel_edge;
 #endif
 }
 
@@ -133,11 +133,11 @@ vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_l
 // voxel that a place lies in, so that half a voxel all around holds nothing.
 float empty_distance(uint level, vec3 position, vec3 direction)
 {
-    uint coarse = min(level + 2u, voxels.counts.x - 1u);
+    uint coarse = min(level + 2u, voxels.level_count - 1u);
     if (coarse <= level || inside_level(coarse, position) < 0.0)
         return 0.0;
     return sample_level(coarse, position, direction).a > 0.0 ? 0.0
-                                                             : 0.5 * voxels.levels[coarse].size.x;
+                                                             : 0.5 * voxels.levels[coarse].voxel_edge_m;
 }
 #endif
 
@@ -147,12 +147,12 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     result.light = vec3(0.0);
     result.occlusion = 0.0;
     result.hit_m = 0.0;
-    result.hit_diameter_m = voxels.levels[0].size.x;
+    result.hit_diameter_m = voxels.levels[0].voxel_edge_m;
     result.hit_density = 0.0;
     float passed = 1.0;
     float most = 0.0;
     float t = 0.0;
-    float voxel = voxels.levels[0].size.x;
+    float voxel = voxels.levels[0].voxel_edge_m;
     for (uint i = 0u; i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE; i++) {
         // Close to its start a cone is thinner than a voxel: no step is longer than one there.
         float length_m = max(min(c.step, 1.0) * voxel, c.step * 2.0 * c.tangent * t);
@@ -162,7 +162,7 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
         // Hardly narrower than the step, so that nothing falls between two samples.
         float diameter = min(max(2.0 * c.tangent * middle, length_m), max(c.widest, voxel));
         vec4 value = sample_voxels(c.origin + middle * c.direction, c.direction, diameter, level);
-        if (level >= voxels.counts.x)
+        if (level >= voxels.level_count)
             break;
 #if CONE_SKIP
         if (value.a == 0.0)
@@ -181,7 +181,7 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
         passed -= absorbed;
         t += length_m;
         // Where levels are coarser than the cone is wide, steps follow them.
-        voxel = max(voxel, diameter < voxels.levels[level].size.x ? voxels.levels[level].size.x : 0.0);
+        voxel = max(voxel, diameter < voxels.levels[level].voxel_edge_m ? voxels.levels[level].voxel_edge_m : 0.0);
     }
     result.transmittance = passed > CONE_OPAQUE ? passed : 0.0;
     return result;

@@ -44,11 +44,11 @@ vec3 tonemap_khronos_neutral(vec3 color)
 
 vec3 tonemap(vec3 color)
 {
-    if (frame.options.w == TONEMAP_HABLE)
+    if (frame.tonemap == TONEMAP_HABLE)
         return tonemap_hable(color);
-    if (frame.options.w == TONEMAP_ACES)
+    if (frame.tonemap == TONEMAP_ACES)
         return tonemap_aces(color);
-    if (frame.options.w == TONEMAP_KHRONOS_NEUTRAL)
+    if (frame.tonemap == TONEMAP_KHRONOS_NEUTRAL)
         return tonemap_khronos_neutral(color);
     return color;
 }
@@ -57,8 +57,8 @@ vec3 tonemap(vec3 color)
 vec3 transfer(vec3 color)
 {
     color = clamp(color, 0.0, 1.0);
-    if (frame.display.y > 0.0)
-        return pow(color, vec3(1.0 / frame.display.y));
+    if (frame.gamma > 0.0)
+        return pow(color, vec3(1.0 / frame.gamma));
     return mix(1.055 * pow(color, vec3(1.0 / 2.4)) - 0.055, 12.92 * color,
                lessThanEqual(color, vec3(0.0031308)));
 }

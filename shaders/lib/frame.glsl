@@ -1,6 +1,7 @@
 // The frame's uniforms and small functions that every pass may use.
-#include "shared/bindings.h"
-#include "shared/blocks.h"
+#include "shared/frame_block.h"
+#include "shared/slots.h"
+#include "shared/work_groups.h"
 
 layout(std140, binding = BIND_FRAME) uniform frame_uniforms
 {
@@ -12,14 +13,14 @@ const float PI = 3.14159265358979;
 // Through the pixel's centre; its part along the camera's forward direction is 1.
 vec3 ray_direction(vec2 pixel)
 {
-    return frame.ray_corner.xyz + (pixel.x + 0.5) * frame.ray_dx.xyz +
-           (pixel.y + 0.5) * frame.ray_dy.xyz;
+    return frame.ray_corner + (pixel.x + 0.5) * frame.ray_dx +
+           (pixel.y + 0.5) * frame.ray_dy;
 }
 
 // Reversed, infinite Z: depth = near / distance along the forward direction.
 float view_distance(float depth)
 {
-    return frame.eye.w / depth;
+    return frame.near_m / depth;
 }
 
 float luminance(vec3 color)

@@ -4,11 +4,11 @@
 
 // Which of the two sets of cones: the cache's, or that of pixels.
 #if PIXEL_CONES
-#define MARCH_OF_SET voxels.pixel_march
+#define CONE_MARCH voxels.pixel_march
 #define CONES voxels.pixel_cones
 #else
-#define MARCH_OF_SET voxels.march
-#define CONES voxels.cones
+#define CONE_MARCH voxels.cache_march
+#define CONES voxels.cache_cones
 #endif
 
 // Roughness whose lobe is about as wide as a cone, for the environment's filtered levels.
@@ -40,10 +40,10 @@ gather_cones begin_gather(vec3 position, vec3 normal, bool thin, vec2 turn)
     mat3 axes = frame_about(normal);
     g.axes = mat3(axes[0] * turn.x + axes[1] * turn.y, axes[1] * turn.x - axes[0] * turn.y, normal);
     float voxel = finest_voxel(position);
-    g.c.origin = position + normal * (cone_start(MARCH_OF_SET.y, thin, normal) * voxel);
-    g.c.tangent = MARCH_OF_SET.w;
-    g.c.step = MARCH_OF_SET.x;
-    g.c.widest = voxels.light.w;
+    g.c.origin = position + normal * (cone_start(CONE_MARCH.start_voxels, thin, normal) * voxel);
+    g.c.tangent = CONE_MARCH.tan_half_angle;
+    g.c.step = CONE_MARCH.step_diameters;
+    g.c.widest = voxels.cone_max_diameter_m;
     g.c.reach_m = 1e30;
     return g;
 }
@@ -51,7 +51,7 @@ gather_cones begin_gather(vec3 position, vec3 normal, bool thin, vec2 turn)
 #if ENVIRONMENT_LIGHT
 vec3 escaped_light(vec3 direction, float transmittance)
 {
-    return environment_specular(direction, GATHER_ROUGHNESS) * (transmittance / voxels.anchor.w);
+    return environment_specular(direction, GATHER_ROUGHNESS) * (transmittance / voxels.radiance_scale);
 }
 #endif
 
@@ -79,17 +79,17 @@ float front_of_hit(cone c, cone_light found)
 // in sixteenths).
 void add_cone(gather_cones g, uint i, inout gathered sum, out uint out_hit)
 {
-    vec4 local = CONES[i];
-    g.c.direction = g.axes * local.xyz;
-    cone_light found = trace_cone(g.c, voxels.light.x);
+    voxel_cone local = CONES[i];
+    g.c.direction = g.axes * local.direction;
+    cone_light found = trace_cone(g.c, voxels.ao_radius_m);
     vec3 light = found.light;
 #if ENVIRONMENT_LIGHT
     light += escaped_light(g.c.direction, found.transmittance);
 #endif
-    sum.light += local.w * light;
-    sum.openness += local.w * (1.0 - found.occlusion);
+    sum.light += local.weight * light;
+    sum.openness += local.weight * (1.0 - found.occlusion);
     found.hit_m = front_of_hit(g.c, found);
-    float inverse = voxels.levels[0].size.y;
+    float inverse = voxels.levels[0].inverse_voxel_edge;
     float diameter = clamp(log2(found.hit_diameter_m * inverse) * 16.0, 0.0, 255.0);
     uint share = uint(found.transmittance * 255.0 + 0.5);
     out_hit = (packHalf2x16(vec2(found.hit_m * inverse, 0.0)) & 0xffffu) | (share << 16) |
@@ -99,16 +99,16 @@ void add_cone(gather_cones g, uint i, inout gathered sum, out uint out_hit)
 // Adds the light of cone `i` as it is now where it hit when it was traced.
 void add_cone_at_hit(gather_cones g, uint i, uint word, inout gathered sum)
 {
-    vec4 local = CONES[i];
-    vec3 direction = g.axes * local.xyz;
-    float hit_m = unpackHalf2x16(word & 0xffffu).x * voxels.levels[0].size.x;
+    voxel_cone local = CONES[i];
+    vec3 direction = g.axes * local.direction;
+    float hit_m = unpackHalf2x16(word & 0xffffu).x * voxels.levels[0].voxel_edge_m;
     float transmittance = float((word >> 16) & 0xffu) / 255.0;
-    float diameter = exp2(float(word >> 24) / 16.0) * voxels.levels[0].size.x;
+    float diameter = exp2(float(word >> 24) / 16.0) * voxels.levels[0].voxel_edge_m;
     uint level;
     vec4 value = sample_voxels(g.c.origin + hit_m * direction, direction, diameter, level);
     vec3 light = value.rgb * ((1.0 - transmittance) / max(value.a, 1e-12));
 #if ENVIRONMENT_LIGHT
     light += escaped_light(direction, transmittance);
 #endif
-    sum.light += local.w * light;
+    sum.light += local.weight * light;
 }

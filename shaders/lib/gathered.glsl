@@ -1,6 +1,7 @@
 // What rays from pixels have found, several pictures of one size. GATHER_STEP: every how many-th pixel
 // has rays.
 #include "lib/surface.glsl"
+#include "shared/ray_accumulation.h"
 
 layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
 {
@@ -9,13 +10,13 @@ layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
 
 uvec2 gathered_size()
 {
-    return (frame.size.xy + uint(GATHER_STEP) - 1u) / uint(GATHER_STEP);
+    return (frame.render_size + uint(GATHER_STEP) - 1u) / uint(GATHER_STEP);
 }
 
 // Distance in m between neighbouring rays where they start.
 float gathered_pixel_m(surface s)
 {
-    return length(s.position - frame.eye.xyz) * length(frame.ray_dx.xyz) * float(GATHER_STEP);
+    return length(s.position - frame.eye) * length(frame.ray_dx) * float(GATHER_STEP);
 }
 
 // Where a pixel's entry of a picture is.
@@ -29,7 +30,7 @@ uint gathered_at(uint picture, uvec2 place)
 // Behind the pictures: of each pixel, sums of the shares of lamps' light that arrive, and their number.
 uint shares_at(uvec2 pixel)
 {
-    return gathered_at(uint(GATHERED_BEFORE_SHARES), uvec2(0)) + pixel.y * frame.size.x + pixel.x;
+    return gathered_at(uint(GATHERED_BEFORE_SHARES), uvec2(0)) + pixel.y * frame.render_size.x + pixel.x;
 }
 #endif
 

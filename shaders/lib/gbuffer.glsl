@@ -12,7 +12,7 @@ layout(binding = UNIT_DEPTH) uniform sampler2D depth_texture;
 
 uint pixel_index(uvec2 pixel)
 {
-    return pixel.y * frame.size.x + pixel.x;
+    return pixel.y * frame.render_size.x + pixel.x;
 }
 
 // Three mantissas of 13 bits and a shared exponent of 8, in 32 + 15 bits: all that floats hold, to
@@ -75,7 +75,7 @@ surface gbuffer_load(uvec2 pixel)
     float depth = texelFetch(depth_texture, ivec2(pixel), 0).r;
     s.shading = second.w >> 24;
     s.view = -normalize(direction);
-    s.position = frame.eye.xyz + direction * (depth > 0.0 ? view_distance(depth) : 1.0);
+    s.position = frame.eye + direction * (depth > 0.0 ? view_distance(depth) : 1.0);
     vec4 weights = unpackUnorm4x8(first.y >> 16);
     s.base_color = vec3(unpackUnorm2x16(first.x), unpackUnorm2x16(first.y).x);
     s.metallic = weights.x;

@@ -3,6 +3,8 @@
 // (Igehy 1999, "Tracing Ray Differentials"), so they are exact for planar triangles.
 #include "lib/surface.glsl"
 #include "lib/material.glsl"
+#include "shared/instance_block.h"
+#include "shared/vertex.h"
 
 layout(std430, binding = BIND_INSTANCES) readonly buffer instance_storage
 {
@@ -70,7 +72,7 @@ struct sight {
 
 sight pixel_sight(vec2 pixel)
 {
-    return sight(frame.eye.xyz, ray_direction(pixel), frame.ray_dx.xyz, frame.ray_dy.xyz, pixel);
+    return sight(frame.eye, ray_direction(pixel), frame.ray_dx, frame.ray_dy, pixel);
 }
 
 // `id` is a visibility id above 0; `eye` is where rays come from.
@@ -78,7 +80,7 @@ triangle fetch_triangle(uint id, vec3 eye)
 {
     triangle t;
     t.instance = id_block_instances[(id - 1u) >> ID_BLOCK_BITS];
-    uint first = instances[t.instance].info.x + 3u * (id - 1u - instances[t.instance].info.z);
+    uint first = instances[t.instance].first_index + 3u * (id - 1u - instances[t.instance].first_visibility_id);
     t.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
     mat4 world_from_local = instances[t.instance].world_from_local;
     t.linear = mat3(world_from_local);
@@ -137,7 +139,7 @@ vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
     if (!(squared > 1e-20))
         return normal;
     tangent *= inversesqrt(squared);
-    float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
+    float mirrored = (instances[t.instance].flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     vec3 bitangent = cross(normal, tangent) * (reversed ? -mirrored : mirrored);
     return safe_normalize(tangent * tangent_space.x + bitangent * tangent_space.y +
                               normal * tangent_space.z,
@@ -151,13 +153,13 @@ surface load_surface(uint id, sight ray, out layer through)
     triangle t = fetch_triangle(id, ray.origin);
     vec3 direction = ray.direction;
     vec3 weights = plane_weights(t, direction);
-    material_block material = materials[instances[t.instance].info.y];
+    material_block material = materials[instances[t.instance].material];
 
     surface s;
     s.view = -normalize(direction);
     s.position = ray.origin + t.corner + weights.y * t.edges[0] + weights.z * t.edges[1];
     vec3 face = -t.volumes[0];
-    float mirrored = (instances[t.instance].info.w & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
+    float mirrored = (instances[t.instance].flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     s.geometric_normal = safe_normalize(face * mirrored, s.view);
     vec3 local_normal = interpolate_direction(t, VERTEX_NORMAL, weights);
     // The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales too.
@@ -169,15 +171,15 @@ surface load_surface(uint id, sight ray, out layer through)
 #if VERTEX_COLORS
     base *= interpolate4(t, VERTEX_COLOR, weights);
 #endif
-    float metallic = material.surface.x;
-    float roughness = material.surface.y;
+    float metallic = material.metallic;
+    float roughness = material.roughness;
     float occlusion = 1.0;
-    float weight = material.dielectric.y;
-    vec3 specular_color = material.specular_color.rgb;
-    float transmission = material.dielectric.z;
-    s.emission = material.emission.rgb;
+    float weight = material.specular;
+    vec3 specular_color = material.specular_color;
+    float transmission = material.transmission;
+    s.emission = material.emission;
 #if TEXTURED
-    if (material.info.z != 0u) {
+    if (material.texture_mask != 0u) {
         texture_point point;
         point.level_dither = dither_level(ray.pixel);
         vec3 weights_dx = plane_weights(t, direction + ray.dx);
@@ -192,9 +194,9 @@ surface load_surface(uint id, sight ray, out layer through)
         point.dy = uv[0] * weights_dy.x + uv[1] * weights_dy.y + uv[2] * weights_dy.z - point.uv;
         // Loops over the slots in use, so that the sampler code is compiled once per space.
 #if COLOR_CLASSES > 0
-        for (uint slots = material.info.z & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
+        for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
             uint slot = uint(findLSB(slots));
-            vec4 texel = sample_color(material.info.y + slot, point);
+            vec4 texel = sample_color(material.first_texture + slot, point);
             base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
             s.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
             specular_color *= slot == TEXTURE_SPECULAR_COLOR ? texel.rgb : vec3(1.0);
@@ -202,20 +204,20 @@ surface load_surface(uint id, sight ray, out layer through)
 #endif
 #if DATA_CLASSES > 0
         vec3 tangent_space = vec3(0.0, 0.0, 1.0);
-        for (uint slots = material.info.z & ~COLOR_TEXTURE_SLOTS; slots != 0u;
+        for (uint slots = material.texture_mask & ~COLOR_TEXTURE_SLOTS; slots != 0u;
              slots &= slots - 1u) {
             uint slot = uint(findLSB(slots));
-            vec4 texel = sample_data(material.info.y + slot, point);
+            vec4 texel = sample_data(material.first_texture + slot, point);
             roughness *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.g : 1.0;
             metallic *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.b : 1.0;
-            occlusion += slot == TEXTURE_OCCLUSION ? material.surface.w * (texel.r - 1.0) : 0.0;
+            occlusion += slot == TEXTURE_OCCLUSION ? material.occlusion_strength * (texel.r - 1.0) : 0.0;
             transmission *= slot == TEXTURE_TRANSMISSION ? texel.r : 1.0;
             weight *= slot == TEXTURE_SPECULAR ? texel.a : 1.0;
             if (slot == TEXTURE_NORMAL)
-                tangent_space = vec3((texel.xy * 2.0 - 1.0) * material.surface.z,
+                tangent_space = vec3((texel.xy * 2.0 - 1.0) * material.normal_scale,
                                      texel.z * 2.0 - 1.0);
         }
-        if ((material.info.z & (1u << TEXTURE_NORMAL)) != 0u)
+        if ((material.texture_mask & (1u << TEXTURE_NORMAL)) != 0u)
             s.normal = mapped_normal(t, tangent_space, weights, s.normal);
 #endif
     }
@@ -228,19 +230,19 @@ surface load_surface(uint id, sight ray, out layer through)
     s.metallic = clamp(metallic, 0.0, 1.0);
     s.roughness = clamp(roughness, 0.0, 1.0);
     s.occlusion = clamp(occlusion, 0.0, 1.0);
-    s.f0 = min(material.dielectric.x * specular_color, 1.0) * weight;
-    s.f90 = (material.info.x & MATERIAL_IOR_ONE) != 0u ? 0.0 : weight;
-    s.shading = material.info.x & MATERIAL_SHADING_MASK;
-    s.thin = (material.info.x & MATERIAL_DOUBLE_SIDED) != 0u;
+    s.f0 = min(material.f0 * specular_color, 1.0) * weight;
+    s.f90 = (material.flags & MATERIAL_IOR_ONE) != 0u ? 0.0 : weight;
+    s.shading = material.flags & MATERIAL_SHADING_MASK;
+    s.thin = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
     if (s.shading == SHADE_UNLIT)
         s.emission = s.base_color;
 
-    bool blend = (material.info.x & MATERIAL_ALPHA_BLEND) != 0u;
+    bool blend = (material.flags & MATERIAL_ALPHA_BLEND) != 0u;
     through.alpha = blend ? clamp(base.a, 0.0, 1.0) : 1.0;
     through.transmission = transmission * (1.0 - s.metallic);
-    through.thickness_m = material.dielectric.w;
-    through.ior = material.attenuation_color.w;
-    through.attenuation_color = material.attenuation_color.rgb;
-    through.attenuation_distance_m = material.specular_color.w;
+    through.thickness_m = material.thickness_m;
+    through.ior = material.ior;
+    through.attenuation_color = material.attenuation_color;
+    through.attenuation_distance_m = material.attenuation_distance_m;
     return s;
 }

@@ -6,6 +6,6 @@
 bool deserves_cone(surface s)
 {
     float f0 = mix(max(s.f0.r, max(s.f0.g, s.f0.b)), 1.0, s.metallic);
-    return s.roughness < voxels.light.z && (s.metallic > 0.0 || s.f90 > 0.0) &&
-           f0 >= voxels.settle.z;
+    return s.roughness < voxels.specular_max_roughness && (s.metallic > 0.0 || s.f90 > 0.0) &&
+           f0 >= voxels.specular_min_reflectance;
 }

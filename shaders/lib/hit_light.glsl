@@ -21,10 +21,10 @@ vec3 voxel_light_at(vec3 world, vec3 direction)
 {
     vec3 position = voxel_position(world);
     uint level = 0u;
-    while (level < voxels.counts.x && inside_level(level, position) < 0.0)
+    while (level < voxels.level_count && inside_level(level, position) < 0.0)
         level++;
     vec4 value = vec4(0.0);
-    for (; level < voxels.counts.x && value.a < HIT_DEPTH; level++)
+    for (; level < voxels.level_count && value.a < HIT_DEPTH; level++)
         value = sample_level(level, position, direction);
     return value.a > 1e-6 ? value.rgb / value.a : vec3(0.0);
 }
@@ -48,7 +48,7 @@ vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float s
     uint id = tree_triangle_texel(at).w;
     mat3 axes = frame_about(direction);
     layer through;
-    surface s = load_surface(id, sight(origin + frame.tree.xyz, direction, axes[0] * spread,
+    surface s = load_surface(id, sight(origin + frame.bvh_origin, direction, axes[0] * spread,
                                        axes[1] * spread, pixel), through);
     // Highlights of smooth surfaces are met too seldom by rays that spread: their lobes are widened to
     // the ray's own (Kaplanyan and Dachsbacher 2013, "Path Space Regularization").
@@ -61,12 +61,12 @@ vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float s
 #endif
 #if FEEDBACK
     vec3 light = cached_irradiance(s.position, s.geometric_normal).rgb;
-    sum += whole_reflectance(s) * light * voxels.anchor.w;
+    sum += whole_reflectance(s) * light * voxels.radiance_scale;
 #endif
     return sum;
 }
 
-// `origin` is relative to frame.tree, `direction` unit, `chance` uniform in [0, 1). `spread`: distance
+// `origin` is relative to frame.bvh_origin, `direction` unit, `chance` uniform in [0, 1). `spread`: distance
 // in m between rays of neighbouring pixels where they start, and how much that grows per m. `roughness`
 // is of the lobe that the ray is from.
 ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, float roughness,
@@ -88,8 +88,8 @@ ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, fl
                                       spread.x / max(hit.distance, 1e-6) + spread.y,
                                       roughness, pixel);
 #else
-        vec3 world = origin + frame.tree.xyz + hit.distance * direction;
-        found.radiance = voxel_light_at(world, direction) * voxels.anchor.w;
+        vec3 world = origin + frame.bvh_origin + hit.distance * direction;
+        found.radiance = voxel_light_at(world, direction) * voxels.radiance_scale;
 #endif
     }
 #if ENVIRONMENT_LIGHT

@@ -26,5 +26,5 @@ vec3 reflect_irradiance(surface s, vec4 light)
 #if AMBIENT_OCCLUSION
     open *= light.a;
 #endif
-    return reflectance * light.rgb * (open * voxels.anchor.w * voxels.light.y);
+    return reflectance * light.rgb * (open * voxels.radiance_scale * voxels.indirect_intensity);
 }

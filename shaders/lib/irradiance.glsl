@@ -4,11 +4,11 @@
 // Asks for the faces that cached_irradiance() reads.
 void request_faces(vec3 world, vec3 normal, uint frame_number)
 {
-    vec3 position = world - voxels.anchor.xyz;
+    vec3 position = world - voxels.anchor;
     float room;
     uint level = cache_level(position, room);
-    for (uint i = 0u; i < 2u && level + i < voxels.shape.x; i++) {
-        vec3 at = position * voxels.levels[level + i].size.y - 0.5;
+    for (uint i = 0u; i < 2u && level + i < voxels.cell_level_count; i++) {
+        vec3 at = position * voxels.levels[level + i].inverse_voxel_edge - 0.5;
         ivec3 low = ivec3(floor(at));
         for (int j = 0; j < 8; j++) {
             uint cell = find_cell(level + i, low + ivec3(j & 1, (j >> 1) & 1, j >> 2));

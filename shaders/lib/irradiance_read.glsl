@@ -7,16 +7,16 @@ uint cache_level(vec3 position, out float out_room)
 {
     uint level = 0u;
     out_room = 0.0;
-    while (level < voxels.shape.x) {
-        ivec4 origin = voxels.levels[level].origin;
-        vec3 at = position * voxels.levels[level].size.y - vec3(origin.xyz);
-        vec3 rim = min(at, float(origin.w) - at);
+    while (level < voxels.cell_level_count) {
+        ivec3 origin = voxels.levels[level].origin;
+        vec3 at = position * voxels.levels[level].inverse_voxel_edge - vec3(origin);
+        vec3 rim = min(at, float(voxels.levels[level].edge) - at);
         out_room = min(rim.x, min(rim.y, rim.z)) - 1.0;
         if (out_room >= 0.0)
             return level;
         level++;
     }
-    return voxels.shape.x;
+    return voxels.cell_level_count;
 }
 
 // A surface takes from the faces of each axis that its normal has a share in, so that nothing jumps
@@ -27,21 +27,23 @@ const float LEAST_SHARE = 0.1;
 // place that look the way of `normal`. `position` is relative to the anchor.
 void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout float weight)
 {
-    vec3 at = position * voxels.levels[level].size.y - 0.5;
+    vec3 at = position * voxels.levels[level].inverse_voxel_edge - 0.5;
     ivec3 low = ivec3(floor(at));
     vec3 t = at - vec3(low);
     vec3 shares = normal * normal;
     uint axes = (shares.x > LEAST_SHARE ? 1u : 0u) | (shares.y > LEAST_SHARE ? 2u : 0u) |
                 (shares.z > LEAST_SHARE ? 4u : 0u);
     // As find_cell(), with what is the same for all eight read once.
-    ivec4 origin = voxels.levels[level].origin;
-    uvec4 index = voxels.levels[level].index;
-    low -= index.z != 0u ? ivec3(0) : origin.xyz;
-    uint record_words = voxels.shape.y;
+    ivec3 origin = voxels.levels[level].origin;
+    uint first_index = voxels.levels[level].first_index;
+    uint shift = voxels.levels[level].edge_log2;
+    int edge_mask = voxels.levels[level].edge - 1;
+    low -= voxels.levels[level].wraps != 0u ? ivec3(0) : origin;
+    uint record_words = voxels.face_record_words;
     for (int i = 0; i < 8; i++) {
         ivec3 step = ivec3(i & 1, (i >> 1) & 1, i >> 2);
-        uvec3 slot = uvec3((low + step) & (origin.w - 1));
-        uint cell = voxel_index[index.x + (slot.x | (slot.y << index.y) | (slot.z << (2u * index.y)))];
+        uvec3 slot = uvec3((low + step) & edge_mask);
+        uint cell = voxel_index[first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift)))];
         if (cell == 0u)
             continue;
         cell = (cell - 1u) * CELL_WORDS + CELL_FACES;
@@ -71,7 +73,7 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
 // Where the faces that look the surface's way are not known, any of its voxel's faces do.
 void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout float weight)
 {
-    uint cell = find_cell(level, ivec3(floor(position * voxels.levels[level].size.y)));
+    uint cell = find_cell(level, ivec3(floor(position * voxels.levels[level].inverse_voxel_edge)));
     if (cell == VOXEL_NONE)
         return;
     for (uint face = 0u; face < VOXEL_FACES; face++) {
@@ -90,16 +92,16 @@ void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout 
 // Irradiance / pi / scale; a: openness. Zero where nothing is known yet.
 vec4 cached_irradiance(vec3 world, vec3 normal)
 {
-    vec3 position = world - voxels.anchor.xyz;
+    vec3 position = world - voxels.anchor;
     float room;
     uint level = cache_level(position, room);
-    if (level >= voxels.shape.x)
+    if (level >= voxels.cell_level_count)
         return vec4(0.0);
     vec4 sum = vec4(0.0);
     float weight = 0.0;
 #if CLIP_LEVELS
     // Over its last voxels a level fades into the next.
-    float own = level + 1u < voxels.shape.x ? clamp(room * 0.25, 0.0, 1.0) : 1.0;
+    float own = level + 1u < voxels.cell_level_count ? clamp(room * 0.25, 0.0, 1.0) : 1.0;
     uint levels = own < 1.0 ? 2u : 1u;
     for (uint i = 0u; i < levels; i++) {
         vec4 part = vec4(0.0);

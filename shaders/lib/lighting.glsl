@@ -5,6 +5,8 @@
 #endif
 
 #include "lib/cone.glsl" // outside of conditions, since files are included once
+#include "shared/area_light_block.h"
+#include "shared/light_block.h"
 
 #if PUNCTUAL_LIGHTS
 layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
@@ -24,7 +26,7 @@ layout(std430, binding = BIND_AREA_LIGHTS) readonly buffer area_light_storage
 #if LIGHT_TILES
 layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 {
-    uint light_masks[]; // frame.lights.z words per tile, one bit per light
+    uint light_masks[]; // frame.light_mask_words words per tile, one bit per light
 };
 #endif
 
@@ -40,13 +42,13 @@ float soft_visibility(float hard, surface s, vec3 to_light, float distance_m, fl
     vec3 normal = s.geometric_normal;
     vec3 origin = voxel_position(s.position);
     float voxel = finest_voxel(origin);
-    float start = cone_start(voxels.pixel_march.y, s.thin, normal);
+    float start = cone_start(voxels.pixel_march.start_voxels, s.thin, normal);
     cone c;
     c.origin = origin + normal * (start * voxel);
     c.direction = to_light;
     c.tangent = max(radius_m / max(distance_m, 1e-6), 1e-3);
     c.step = 1.0;
-    c.widest = voxels.light.w;
+    c.widest = voxels.cone_max_diameter_m;
     // Not into the voxels around the light, however wide the cone has become there.
     c.reach_m = (distance_m - (start + 2.0) * voxel) / (1.0 + 3.0 * c.tangent);
     cone_light found = trace_cone(c, 1.0);
@@ -61,7 +63,7 @@ float soft_visibility(float hard, surface s, vec3 to_light, float distance_m, fl
 #if PUNCTUAL_LIGHTS
 float distance_attenuation(float squared, float range_m)
 {
-    float attenuation = 1.0 / max(squared, frame.environment.w);
+    float attenuation = 1.0 / max(squared, frame.light_min_distance2);
     if (range_m > 0.0) {
         float ratio = squared / (range_m * range_m);
         attenuation *= clamp(1.0 - ratio * ratio, 0.0, 1.0);
@@ -72,29 +74,29 @@ float distance_attenuation(float squared, float range_m)
 // What a lamp would send by the surface to the viewer if nothing stood between; `l` is the way to it.
 vec3 punctual_unshadowed(surface s, light_block light, out vec3 l)
 {
-    l = -light.direction.xyz;
+    l = -light.direction;
     float strength = 1.0;
-    if (int(light.position.w) != LIGHT_DIRECTIONAL) {
-        vec3 to_light = light.position.xyz - s.position;
+    if (light.type != LIGHT_DIRECTIONAL) {
+        vec3 to_light = light.position - s.position;
         float squared = dot(to_light, to_light);
         l = safe_normalize(to_light, s.normal);
-        strength = distance_attenuation(squared, light.direction.w);
-        if (int(light.position.w) == LIGHT_SPOT) {
-            float cosine = dot(light.direction.xyz, -l);
-            float angular = clamp(cosine * light.cone.x + light.cone.y, 0.0, 1.0);
+        strength = distance_attenuation(squared, light.range_m);
+        if (light.type == LIGHT_SPOT) {
+            float cosine = dot(light.direction, -l);
+            float angular = clamp(cosine * light.cone_scale + light.cone_offset, 0.0, 1.0);
             strength *= angular * angular;
         }
     }
     if (strength <= 0.0 || dot(s.normal, l) <= 0.0 || dot(s.geometric_normal, l) <= 0.0)
         return vec3(0.0);
-    return brdf_cosine(s, l) * light.radiance.rgb * strength;
+    return brdf_cosine(s, l) * light.intensity * strength;
 }
 
 // Whether its shadows are soft.
 bool has_size(light_block light)
 {
-    return light.radiance.w > 0.0 && int(light.position.w) != LIGHT_DIRECTIONAL &&
-           light.shadow.x != NO_SHADOW;
+    return light.radius_m > 0.0 && light.type != LIGHT_DIRECTIONAL &&
+           light.shadow.first_view != NO_SHADOW;
 }
 
 vec3 punctual_light(surface s, light_block light)
@@ -108,10 +110,10 @@ vec3 punctual_light(surface s, light_block light)
     if (has_size(light))
         return reflected * seen_share;
 #endif
-    float lit = shadow_visibility(light.shadow, light.position.xyz, s.position, s.geometric_normal, l);
+    float lit = shadow_visibility(light.shadow, light.position, s.position, s.geometric_normal, l);
 #if CONE_SHADOWS
     if (has_size(light))
-        lit = soft_visibility(lit, s, l, length(light.position.xyz - s.position), light.radiance.w);
+        lit = soft_visibility(lit, s, l, length(light.position - s.position), light.radius_m);
 #endif
     reflected *= lit;
 #endif
@@ -170,8 +172,8 @@ float quad_form_factor(vec3 corners[4], vec3 n)
 vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reversed)
 {
     vec3 mirror = reflect(-s.view, s.normal);
-    vec3 center = light.center.xyz - s.position;
-    vec3 normal = reversed ? -light.normal.xyz : light.normal.xyz;
+    vec3 center = light.center - s.position;
+    vec3 normal = reversed ? -light.normal : light.normal;
     float slope = dot(mirror, normal);
     vec3 target = center;
     if (slope < -1e-4)
@@ -185,17 +187,17 @@ vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reve
     vec2 at = clamp(vec2(vv * dot(d, u) - uv * dot(d, v), uu * dot(d, v) - uv * dot(d, u)) * scale,
                     0.0, 1.0);
     vec3 nearest = corners[0] + u * at.x + v * at.y;
-    float squared = max(dot(nearest, nearest), frame.environment.w);
+    float squared = max(dot(nearest, nearest), frame.light_min_distance2);
     vec3 l = nearest * inversesqrt(squared);
     float cosine = max(-dot(l, normal), 0.0);
     float alpha = alpha_of(s);
-    float solid_angle = min(light.radiance.w * cosine / squared, 2.0 * PI);
+    float solid_angle = min(light.area_m2 * cosine / squared, 2.0 * PI);
     // A lobe narrower than the emitter sees radiance, not intensity: the widened lobe integrates
     // to at most one over the emitter.
     float widened = sqrt(alpha * alpha + solid_angle / (4.0 * PI));
     // At grazing angles the widening does not suffice; no surface reflects more than it receives.
     vec3 share = min(specular_brdf_cosine(s, l, min(widened, 1.0)) * solid_angle, 1.0);
-    return share * light.radiance.rgb;
+    return share * light.radiance;
 }
 
 #endif
@@ -204,23 +206,23 @@ vec3 area_unshadowed(surface s, area_light_block light)
 {
 #if VOXEL_LIGHT
     // Cones gather the light of large emitters.
-    if (light.center.w > 0.0)
+    if (light.in_voxels != 0u)
         return vec3(0.0);
 #endif
-    float side = dot(light.normal.xyz, s.position - light.center.xyz);
+    float side = dot(light.normal, s.position - light.center);
     bool reversed = side < 0.0;
-    if (reversed && light.corners[0].w == 0.0)
+    if (reversed && light.two_sided == 0u)
         return vec3(0.0);
     vec3 corners[4];
     for (int i = 0; i < 4; i++)
         corners[i] = light.corners[reversed ? 3 - i : i].xyz - s.position;
     // A corner at the receiver has no direction; the emitter itself is not lit by itself.
-    if (abs(side) < 1e-6 * sqrt(light.radiance.w))
+    if (abs(side) < 1e-6 * sqrt(light.area_m2))
         return vec3(0.0);
     float form_factor = max(-quad_form_factor(corners, s.normal), 0.0);
-    vec3 to_light = safe_normalize(light.center.xyz - s.position, s.normal);
+    vec3 to_light = safe_normalize(light.center - s.position, s.normal);
     float v_h = clamp(dot(s.view, safe_normalize(to_light + s.view, s.normal)), 0.0, 1.0);
-    vec3 reflected = diffuse_reflectance(s, v_h) * light.radiance.rgb * form_factor;
+    vec3 reflected = diffuse_reflectance(s, v_h) * light.radiance * form_factor;
 #if SPECULAR
     reflected += area_specular(s, light, corners, reversed);
 #endif
@@ -234,18 +236,18 @@ vec3 area_light(surface s, area_light_block light)
     if (max(reflected.r, max(reflected.g, reflected.b)) <= 0.0)
         return vec3(0.0);
 #if RAY_SHADOWS
-    if (light.shadow.x != NO_SHADOW)
+    if (light.shadow.first_view != NO_SHADOW)
         return reflected * seen_share;
 #endif
-    vec3 to_light = safe_normalize(light.center.xyz - s.position, s.normal);
-    float lit = shadow_visibility(light.shadow, light.center.xyz, s.position, s.geometric_normal,
+    vec3 to_light = safe_normalize(light.center - s.position, s.normal);
+    float lit = shadow_visibility(light.shadow, light.center, s.position, s.geometric_normal,
                                   to_light);
 #if CONE_SHADOWS
     // As a disk of the emitter's area, seen at its slant.
-    float cosine = abs(dot(light.normal.xyz, to_light));
-    if (light.shadow.x != NO_SHADOW)
-        lit = soft_visibility(lit, s, to_light, length(light.center.xyz - s.position),
-                              sqrt(light.radiance.w * cosine / PI));
+    float cosine = abs(dot(light.normal, to_light));
+    if (light.shadow.first_view != NO_SHADOW)
+        lit = soft_visibility(lit, s, to_light, length(light.center - s.position),
+                              sqrt(light.area_m2 * cosine / PI));
 #endif
     reflected *= lit;
 #endif
@@ -258,9 +260,9 @@ vec3 direct_light(surface s, uvec2 pixel)
 {
     vec3 sum = vec3(0.0);
 #if PUNCTUAL_LIGHTS && LIGHT_TILES
-    uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.size.z + pixel.x / LIGHT_TILE_EDGE;
-    for (uint word = 0u; word < frame.lights.z; word++) {
-        uint mask = light_masks[tile * frame.lights.z + word];
+    uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.tile_count.x + pixel.x / LIGHT_TILE_EDGE;
+    for (uint word = 0u; word < frame.light_mask_words; word++) {
+        uint mask = light_masks[tile * frame.light_mask_words + word];
         while (mask != 0u) {
             uint bit = uint(findLSB(mask));
             mask &= mask - 1u;
@@ -268,11 +270,11 @@ vec3 direct_light(surface s, uvec2 pixel)
         }
     }
 #elif PUNCTUAL_LIGHTS
-    for (uint i = 0u; i < frame.lights.x; i++)
+    for (uint i = 0u; i < frame.light_count; i++)
         sum += punctual_light(s, lights[i]);
 #endif
 #if AREA_LIGHTS
-    for (uint i = 0u; i < frame.lights.y; i++)
+    for (uint i = 0u; i < frame.area_light_count; i++)
         sum += area_light(s, area_lights[i]);
 #endif
     return sum;

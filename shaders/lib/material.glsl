@@ -3,6 +3,8 @@
 // linear pictures; TEXTURE_TRANSFORMS: whether any texture has a transform of its own;
 // SECOND_UV_SET: whether any texture uses the second set of texture coordinates.
 #include "lib/frame.glsl"
+#include "shared/material_block.h"
+#include "shared/texture_block.h"
 
 layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
 {
@@ -11,7 +13,7 @@ layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
 
 // By the frame's quality, unless the shader says otherwise.
 #ifndef TEXTURE_ANISOTROPY
-#define TEXTURE_ANISOTROPY frame.textures.x
+#define TEXTURE_ANISOTROPY frame.texture_max_anisotropy
 #endif
 
 #define TEXTURED (COLOR_CLASSES + DATA_CLASSES > 0)
@@ -108,7 +110,7 @@ vec4 sample_data_class(uint class_number, vec3 at, float lod)
 float dither_level(vec2 pixel)
 {
     float noise = fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
-    return frame.textures.z * (noise - 0.5);
+    return frame.texture_dither_levels * (noise - 0.5);
 }
 
 // Where and how to sample: the footprint's place in the texture, its longer axis, level and number
@@ -144,7 +146,7 @@ void set_filter(inout footprint f, vec2 dx, vec2 dy, float level_dither, float e
 
 footprint find_footprint(uint texture_number, texture_point point)
 {
-    uint bits = textures[texture_number].info.x;
+    uint bits = textures[texture_number].sampling;
     vec2 at = point.uv.xy;
     vec2 dx = point.dx.xy;
     vec2 dy = point.dy.xy;
@@ -155,8 +157,8 @@ footprint find_footprint(uint texture_number, texture_point point)
     dy = second ? point.dy.zw : dy;
 #endif
 #if TEXTURE_TRANSFORMS
-    vec3 row_u = textures[texture_number].uv_row_u.xyz;
-    vec3 row_v = textures[texture_number].uv_row_v.xyz;
+    vec3 row_u = textures[texture_number].uv_row_u;
+    vec3 row_v = textures[texture_number].uv_row_v;
     at = vec2(dot(row_u, vec3(at, 1.0)), dot(row_v, vec3(at, 1.0)));
     dx = vec2(dot(row_u.xy, dx), dot(row_v.xy, dx));
     dy = vec2(dot(row_u.xy, dy), dot(row_v.xy, dy));

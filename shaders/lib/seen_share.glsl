@@ -23,7 +23,7 @@ vec3 seen_share_of(surface s, uvec2 pixel)
         for (int x = -2; x <= 2; x++) {
             ivec2 other = ivec2(pixel) + ivec2(x, y);
             if ((x == 0 && y == 0) || any(lessThan(other, ivec2(0))) ||
-                any(greaterThanEqual(other, ivec2(frame.size.xy))))
+                any(greaterThanEqual(other, ivec2(frame.render_size))))
                 continue;
             vec4 value = gathered_light[shares_at(uvec2(other))];
             if (value.a == 0.0)

@@ -1,6 +1,7 @@
 // Shadow-map look-ups: percentage-closer filtering (Reeves et al. 1987) over the hardware's 2x2
 // comparison, with an offset along the surface normal against acne (Holbert 2011).
 #include "lib/frame.glsl"
+#include "shared/shadow_view_block.h"
 
 layout(std430, binding = BIND_SHADOW_VIEWS) readonly buffer shadow_view_storage
 {
@@ -11,7 +12,7 @@ layout(std430, binding = BIND_SHADOW_VIEWS) readonly buffer shadow_view_storage
 layout(binding = UNIT_SHADOW_MAP) uniform sampler2DArrayShadow shadow_map;
 
 #ifndef SHADOW_TAPS
-#define SHADOW_TAPS frame.options.z
+#define SHADOW_TAPS frame.shadow_tap_count
 #endif
 
 const float PCF_RADIUS_TEXELS = 1.5;
@@ -61,9 +62,9 @@ struct shadow_place {
 shadow_place project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light)
 {
     mat4 clip_from_world = shadow_views[view_number].clip_from_world;
-    vec4 texel = shadow_views[view_number].texel;
     vec4 clip = clip_from_world * vec4(position, 1.0);
-    float size = texel.x * (texel.w > 0.0 ? max(clip.w, 0.0) : 1.0);
+    bool perspective = shadow_views[view_number].perspective != 0u;
+    float size = shadow_views[view_number].texel_m * (perspective ? max(clip.w, 0.0) : 1.0);
     vec4 lifted =
         clip + clip_from_world * vec4(normal * (size * offset_texels(normal, to_light)), 0.0);
     const vec3 uv_from_ndc = vec3(0.5, -0.5, 1.0);
@@ -78,17 +79,17 @@ shadow_place project_to_shadow(uint view_number, vec3 position, vec3 normal, vec
 
 // Refines a place in the sun's map of the whole scene to the smallest of the view's cascades that
 // holds it, where texels are smaller and so is the lift. All share the sun's axes, so a cascade is a
-// scale and an offset. Returns its number, frame.lights.w for none.
+// scale and an offset. Returns its number, frame.cascade_count for none.
 uint refine_by_cascade(inout shadow_place place)
 {
-    uint found = frame.lights.w;
+    uint found = frame.cascade_count;
     shadow_place from = place;
-    for (uint i = frame.lights.w; i-- > 0u;) {
-        vec4 scale = frame.cascade_scales[i];
-        vec3 at = from.at.xyw * scale.xyz + frame.cascade_offsets[i].xyz;
+    for (uint i = frame.cascade_count; i-- > 0u;) {
+        vec3 scale = frame.cascades[i].scale;
+        vec3 at = from.at.xyw * scale + frame.cascades[i].offset;
         if (is_inside(at.xy)) {
-            place.at = vec4(at.xy, scale.w, at.z);
-            place.lift = from.lift * (scale.xyz / scale.x);
+            place.at = vec4(at.xy, frame.cascades[i].layer, at.z);
+            place.lift = from.lift * (scale / scale.x);
             found = i;
         }
     }
@@ -115,23 +116,23 @@ vec4 project_to_cube(uint first_view, vec3 origin, vec3 position, vec3 normal, v
     float face = (is_x ? 0.0 : is_y ? 2.0 : 4.0) + (along > 0.0 ? 0.0 : 1.0);
     float distance = max(abs(along), 1e-20);
     vec2 place = vec2(right, -up) / (distance * SHADOW_FACE_MARGIN);
-    return vec4(0.5 + 0.5 * place, float(first_view) + face, frame.textures.y / distance);
+    return vec4(0.5 + 0.5 * place, float(first_view) + face, frame.shadow_near_m / distance);
 }
 #endif
 
 // Share of a light that reaches a point: 0 in shadow, 1 lit. `shadow` is the light's, `origin` its
 // position (unused for directional lights).
-float shadow_visibility(uvec4 shadow, vec3 origin, vec3 position, vec3 normal, vec3 to_light)
+float shadow_visibility(light_shadow shadow, vec3 origin, vec3 position, vec3 normal, vec3 to_light)
 {
-    if (shadow.x == NO_SHADOW)
+    if (shadow.first_view == NO_SHADOW)
         return 1.0;
     vec4 at = vec4(0.0);
     bool inside = true;
 #if FLAT_SHADOWS
-    if (shadow.y == 1u) {
-        shadow_place place = project_to_shadow(shadow.x, position, normal, to_light);
+    if (shadow.view_count == 1u) {
+        shadow_place place = project_to_shadow(shadow.first_view, position, normal, to_light);
 #ifndef VIEWLESS // cascades are a view's own
-        if (shadow.w != 0u)
+        if (shadow.has_cascades != 0u)
             refine_by_cascade(place);
 #endif
         at = place.at + vec4(place.lift.xy, 0.0, place.lift.z);
@@ -139,8 +140,8 @@ float shadow_visibility(uvec4 shadow, vec3 origin, vec3 position, vec3 normal, v
     }
 #endif
 #if CUBE_SHADOWS
-    if (shadow.y == 6u)
-        at = project_to_cube(shadow.x, origin, position, normal, to_light);
+    if (shadow.view_count == 6u)
+        at = project_to_cube(shadow.first_view, origin, position, normal, to_light);
 #endif
     // Beyond what a spot or the sun sees nothing casts.
     float lit = filtered_comparison(at);

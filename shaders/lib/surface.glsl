@@ -1,5 +1,6 @@
 // A shaded point: unpacked from the G-buffer, or made from a visibility id.
 #include "lib/frame.glsl"
+#include "shared/shading_model.h"
 
 struct surface {
     vec3 position; // world

@@ -1,5 +1,6 @@
-// Rays against the scene's triangles. The tree's layout is told in shared/bindings.h.
+// Rays against the scene's triangles. Their layout is told in shared/bvh.h.
 #include "lib/frame.glsl"
+#include "shared/bvh.h"
 
 layout(binding = UNIT_TREE_NODES) uniform usampler2D tree_nodes;
 layout(binding = UNIT_TREE_TRIANGLES) uniform usampler2D tree_triangles;
@@ -26,8 +27,8 @@ uvec4 tree_triangle_texel(uint at)
 // Where rays start that leave a surface: off it by what rounding may have moved it.
 vec3 tree_origin(vec3 world, vec3 geometric_normal)
 {
-    float offset = frame.tree.w + 4e-5 * length(world - frame.eye.xyz);
-    return world - frame.tree.xyz + offset * geometric_normal;
+    float offset = frame.ray_min_offset_m + 4e-5 * length(world - frame.eye);
+    return world - frame.bvh_origin + offset * geometric_normal;
 }
 
 // Interval of a ray in a box; empty where x > y.
@@ -71,7 +72,7 @@ void cross_triangle(uint number, vec3 origin, vec3 direction, float chance, inou
 }
 
 // The nearest triangle within `reach`; hit.triangle is TREE_LEAF where there is none. `origin` is
-// relative to frame.tree.
+// relative to frame.bvh_origin.
 tree_hit find_nearest(vec3 origin, vec3 direction, float reach, float chance)
 {
     tree_hit hit;

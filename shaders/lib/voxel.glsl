@@ -1,7 +1,7 @@
 // Where voxels and their cells lie. Voxel coordinates count from the volume's anchor; those of a
 // toroidal level wrap around in memory, so that a moved level keeps what it still covers.
 #include "lib/frame.glsl"
-#include "shared/voxel.h"
+#include "shared/voxel_records.h"
 
 layout(std140, binding = BIND_VOXELS) uniform voxel_uniforms
 {
@@ -10,16 +10,16 @@ layout(std140, binding = BIND_VOXELS) uniform voxel_uniforms
 
 uint voxel_slot(uint level, ivec3 voxel)
 {
-    ivec4 origin = voxels.levels[level].origin;
-    ivec3 start = voxels.levels[level].index.z != 0u ? ivec3(0) : origin.xyz;
-    ivec3 at = (voxel - start) & (origin.w - 1);
-    uint shift = voxels.levels[level].index.y;
+    ivec3 origin = voxels.levels[level].origin;
+    ivec3 start = voxels.levels[level].wraps != 0u ? ivec3(0) : origin;
+    ivec3 at = (voxel - start) & (voxels.levels[level].edge - 1);
+    uint shift = voxels.levels[level].edge_log2;
     return uint(at.x) | (uint(at.y) << shift) | (uint(at.z) << (2u * shift));
 }
 
 ivec3 slot_address(uint level, uint slot)
 {
-    uint shift = voxels.levels[level].index.y;
+    uint shift = voxels.levels[level].edge_log2;
     uint mask = (1u << shift) - 1u;
     return ivec3(slot & mask, (slot >> shift) & mask, slot >> (2u * shift));
 }
@@ -27,18 +27,18 @@ ivec3 slot_address(uint level, uint slot)
 // The voxel that lies at a slot now.
 ivec3 slot_voxel(uint level, uint slot)
 {
-    ivec4 origin = voxels.levels[level].origin;
+    ivec3 origin = voxels.levels[level].origin;
     ivec3 at = slot_address(level, slot);
-    if (voxels.levels[level].index.z == 0u)
-        return origin.xyz + at;
-    return origin.xyz + ((at - origin.xyz) & (origin.w - 1));
+    if (voxels.levels[level].wraps == 0u)
+        return origin + at;
+    return origin + ((at - origin) & (voxels.levels[level].edge - 1));
 }
 
 bool voxel_in_level(uint level, ivec3 voxel)
 {
-    ivec4 origin = voxels.levels[level].origin;
-    ivec3 at = voxel - origin.xyz;
-    return all(greaterThanEqual(at, ivec3(0))) && all(lessThan(at, ivec3(origin.w)));
+    ivec3 origin = voxels.levels[level].origin;
+    ivec3 at = voxel - origin;
+    return all(greaterThanEqual(at, ivec3(0))) && all(lessThan(at, ivec3(voxels.levels[level].edge)));
 }
 
 vec3 face_direction(uint face)

@@ -17,14 +17,14 @@ layout(std430, binding = BIND_CELLS) CELLS_ACCESS buffer cell_storage
 
 layout(std430, binding = BIND_FACES) CELLS_ACCESS buffer face_storage
 {
-    uint faces[]; // voxels.shape.y words each
+    uint faces[]; // voxels.face_record_words words each
 };
 
 // First word of a cell's face record; VOXEL_NONE if it has none.
 uint cell_face(uint cell, uint face)
 {
     uint record = cells[cell * CELL_WORDS + CELL_FACES + face];
-    return record == 0u ? VOXEL_NONE : (record - 1u) * voxels.shape.y;
+    return record == 0u ? VOXEL_NONE : (record - 1u) * voxels.face_record_words;
 }
 
 // Irradiance / pi / scale, and openness.
@@ -44,6 +44,6 @@ vec4 face_shown_light(uint words)
 // The cell of a voxel of the level, or VOXEL_NONE.
 uint find_cell(uint level, ivec3 voxel)
 {
-    uint entry = voxel_index[voxels.levels[level].index.x + voxel_slot(level, voxel)];
+    uint entry = voxel_index[voxels.levels[level].first_index + voxel_slot(level, voxel)];
     return entry - 1u; // empty: 0 - 1 = VOXEL_NONE
 }

@@ -1,5 +1,5 @@
 // What half floats cannot hold is cut, and counted. `counters` must be declared, and be writable.
-#include "shared/voxel.h"
+#include "shared/voxel_records.h"
 
 const float LARGEST_HALF = 65504.0;
 

@@ -14,12 +14,12 @@ layout(std430, binding = BIND_VOXEL_FREE) coherent buffer voxel_free_storage
 
 uint free_faces_start()
 {
-    return voxels.counts.z + 2u * voxels.counts.w;
+    return voxels.cell_capacity + 2u * voxels.surfel_capacity;
 }
 
 void inherit_light(uint words, uint level, ivec3 voxel, uint face)
 {
-    if (level + 1u >= voxels.shape.x || !voxel_in_level(level + 1u, voxel >> 1))
+    if (level + 1u >= voxels.cell_level_count || !voxel_in_level(level + 1u, voxel >> 1))
         return;
     uint parent = find_cell(level + 1u, voxel >> 1);
     uint from = parent == VOXEL_NONE ? VOXEL_NONE : cell_face(parent, face);
@@ -44,12 +44,12 @@ uint make_face(uint cell, uint level, ivec3 voxel, uint face)
         record = free_words[free_faces_start() + uint(left) - 1u];
     else
         record = atomicAdd(counters[COUNTER_FACES], 1u);
-    if (record >= voxels.shape.z) {
+    if (record >= voxels.face_capacity) {
         atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_FACES);
         return VOXEL_NONE;
     }
     cells[cell * CELL_WORDS + CELL_FACES + face] = record + 1u;
-    words = record * voxels.shape.y;
+    words = record * voxels.face_record_words;
     for (uint i = 0u; i < FACE_WORDS; i++)
         faces[words + i] = 0u;
     faces[words + FACE_CELL] = cell * 8u + face;

@@ -26,10 +26,10 @@ uint allocate_surfel(uint key)
     uint surfel;
     int left = int(atomicAdd(counters[COUNTER_FREE_SURFELS], 0xffffffffu));
     if (left > 0) {
-        surfel = free_words[voxels.counts.z + uint(left) - 1u];
+        surfel = free_words[voxels.cell_capacity + uint(left) - 1u];
     } else {
         surfel = atomicAdd(counters[COUNTER_SURFELS], 1u);
-        if (surfel >= voxels.counts.w) {
+        if (surfel >= voxels.surfel_capacity) {
             atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
             return VOXEL_NONE;
         }
@@ -70,7 +70,7 @@ uint find_surfel(uint index_word, uint key, inout uint spare)
 void give_back_surfel(uint spare)
 {
     if (spare != VOXEL_NONE)
-        free_words[voxels.counts.z + voxels.counts.w +
+        free_words[voxels.cell_capacity + voxels.surfel_capacity +
                    atomicAdd(counters[COUNTER_RETURNED_SURFELS], 1u)] = spare;
 }
 

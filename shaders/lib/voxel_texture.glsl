@@ -9,12 +9,12 @@ layout(binding = IMAGE_VOXEL_RADIANCE, rgba16f) uniform image3D voxel_image;
 // border on the other side, so that trilinear filtering sees its neighbours across the seam.
 void store_voxel_face(uint level, ivec3 address, uint face, vec4 value)
 {
-    ivec4 texels = voxels.levels[level].texels;
-    int edge = voxels.levels[level].origin.w;
-    ivec3 base = texels.xyz + ivec3(texels.w * int(face), 0, 0);
+    ivec3 texels = voxels.levels[level].texel_origin;
+    int edge = voxels.levels[level].edge;
+    ivec3 base = texels + ivec3(voxels.levels[level].face_stride * int(face), 0, 0);
     value.rgb = cut_to_half(value.rgb);
     imageStore(voxel_image, base + address, value);
-    if (voxels.levels[level].index.z == 0u)
+    if (voxels.levels[level].wraps == 0u)
         return;
     ivec3 shift = ivec3(equal(address, ivec3(0))) * edge -
                   ivec3(equal(address, ivec3(edge - 1))) * edge;

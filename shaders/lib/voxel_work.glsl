@@ -1,15 +1,11 @@
-// What voxelization works through: regions of voxels to fill anew, and chunks of triangles.
+// What voxelization works through: regions of voxels to fill anew, and batches of triangles.
 #include "lib/voxel.glsl"
-
-struct voxel_region {
-    ivec4 low;  // w: level
-    ivec4 size; // w: number of its first voxel among those of all regions
-};
+#include "shared/voxel_work.h"
 
 layout(std430, binding = BIND_VOXEL_WORK) readonly buffer voxel_work_storage
 {
     voxel_region regions[VOXEL_MAX_REGIONS];
-    uvec4 chunks[]; // instance, first triangle, triangles, region
+    voxel_batch batches[];
 };
 
 layout(std430, binding = BIND_VOXEL_COUNTERS) coherent buffer voxel_counter_storage
@@ -32,17 +28,17 @@ uint quotient(uint a, uint b)
 // Finds the voxel that an invocation is for; false beyond the last one.
 bool region_voxel(uint number, out uint level, out ivec3 voxel)
 {
-    if (number >= voxels.work.y)
+    if (number >= voxels.region_voxel_count)
         return false;
     uint i = 0u;
-    while (i + 1u < voxels.work.x && uint(regions[i + 1u].size.w) <= number)
+    while (i + 1u < voxels.region_count && regions[i + 1u].first_voxel <= number)
         i++;
-    uvec3 size = uvec3(regions[i].size.xyz);
-    uint at = number - uint(regions[i].size.w);
-    level = uint(regions[i].low.w);
+    uvec3 size = uvec3(regions[i].size);
+    uint at = number - regions[i].first_voxel;
+    level = regions[i].level;
     uint row = quotient(at, size.x);
     uint layer = quotient(row, size.y);
-    voxel = regions[i].low.xyz + ivec3(at - row * size.x, row - layer * size.y, layer);
+    voxel = regions[i].low + ivec3(at - row * size.x, row - layer * size.y, layer);
     return true;
 }
 
@@ -57,7 +53,7 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
         uint level_;                                                                               \
         ivec3 voxel_;                                                                              \
         if (region_voxel((run) * REGION_RUN + i_, level_, voxel_) &&                               \
-            voxel_index[voxels.levels[level_].index.x + voxel_slot(level_, voxel_)] != 0u)         \
+            voxel_index[voxels.levels[level_].first_index + voxel_slot(level_, voxel_)] != 0u)         \
             out_bits |= 1u << i_;                                                                  \
     }
 

@@ -7,7 +7,7 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (all(lessThan(pixel, frame.size.xy)))
+    if (all(lessThan(pixel, frame.render_size)))
         radiance[pixel_index(pixel)] = vec4(unpack_emission(gbuffer[2u * pixel_index(pixel) + 1u]),
                                             1.0);
 }

@@ -9,7 +9,7 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     surface s = gbuffer_load(pixel);
     vec3 sum = s.emission;

@@ -3,6 +3,7 @@
 // Tests each light's sphere against the tile's frustum between its nearest and farthest depth
 // (Olsson and Assarsson 2011, "Tiled Shading").
 #include "lib/frame.glsl"
+#include "shared/light_block.h"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
@@ -34,7 +35,7 @@ void reduce_depths(uvec2 tile)
     for (uint i = gl_LocalInvocationIndex; i < LIGHT_TILE_EDGE * LIGHT_TILE_EDGE;
          i += LINEAR_GROUP) {
         uvec2 pixel = tile * LIGHT_TILE_EDGE + uvec2(i % LIGHT_TILE_EDGE, i / LIGHT_TILE_EDGE);
-        if (any(greaterThanEqual(pixel, frame.size.xy)))
+        if (any(greaterThanEqual(pixel, frame.render_size)))
             continue;
         float depth = texelFetch(depth_texture, ivec2(pixel), 0).r;
         if (depth > 0.0) {
@@ -54,7 +55,7 @@ bool sphere_in_tile(vec3 center, float radius, vec3 planes[4], float near_distan
     for (int i = 0; i < 4; i++)
         if (dot(planes[i], center) > radius)
             return false;
-    float along = dot(frame.forward.xyz, center);
+    float along = dot(frame.forward, center);
     return along + radius >= near_distance && along - radius <= far_distance;
 }
 
@@ -83,17 +84,17 @@ void main()
         if (dot(planes[i], corners[(i + 2) & 3]) > 0.0)
             planes[i] = -planes[i];
     }
-    uint words = frame.lights.z;
-    uint tile_index = tile.y * frame.size.z + tile.x;
+    uint words = frame.light_mask_words;
+    uint tile_index = tile.y * frame.tile_count.x + tile.x;
     for (uint word = gl_LocalInvocationIndex; word < words; word += LINEAR_GROUP) {
         uint mask = 0u;
         for (uint bit = 0u; bit < 32u && !empty; bit++) {
             uint index = word * 32u + bit;
-            if (index >= frame.lights.x)
+            if (index >= frame.light_count)
                 break;
             light_block light = lights[index];
-            bool unlimited = int(light.position.w) == LIGHT_DIRECTIONAL || light.direction.w <= 0.0;
-            if (unlimited || sphere_in_tile(light.position.xyz - frame.eye.xyz, light.direction.w,
+            bool unlimited = light.type == LIGHT_DIRECTIONAL || light.range_m <= 0.0;
+            if (unlimited || sphere_in_tile(light.position - frame.eye, light.range_m,
                                             planes, near_distance, far_distance))
                 mask |= 1u << bit;
         }

@@ -16,13 +16,18 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
-    uvec4 fragment_counts;
+    uint fragment_count;    // met by rasterisation
+    uint fragment_capacity; // room for them
+    uint fragment_unused[2];
     uint fragment_words[];
 };
 
 layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 {
-    uvec4 tile_arguments;
+    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_groups_y;
+    uint tile_groups_z;
+    uint tile_unused;
     uint tiles[];
 };
 
@@ -33,15 +38,15 @@ uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
     float distances[MAX_BLENDED_LAYERS];
     uint count = 0u;
     vec3 direction = ray_direction(vec2(pixel));
-    uint pixels = frame.size.x * frame.size.y;
-    uint slot = fragment_words[pixel.y * frame.size.x + pixel.x];
+    uint pixels = frame.render_size.x * frame.render_size.y;
+    uint slot = fragment_words[pixel.y * frame.render_size.x + pixel.x];
     while (slot != 0u) {
         uint base = pixels + 2u * (slot - 1u);
         uint id = fragment_words[base + 1u];
         slot = fragment_words[base];
-        triangle t = fetch_triangle(id, frame.eye.xyz);
+        triangle t = fetch_triangle(id, frame.eye);
         vec3 w = plane_weights(t, direction);
-        float along = dot(frame.forward.xyz, t.corner + w.y * t.edges[0] + w.z * t.edges[1]);
+        float along = dot(frame.forward, t.corner + w.y * t.edges[0] + w.z * t.edges[1]);
         if (count == MAX_BLENDED_LAYERS) {
             if (along > distances[0] || (along == distances[0] && id > layers[0]))
                 continue;
@@ -94,7 +99,7 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
 #if AMBIENT_OCCLUSION
     diffuse *= around.a;
 #endif
-    sum += diffuse * around.rgb * (s.occlusion * voxels.anchor.w * voxels.light.y);
+    sum += diffuse * around.rgb * (s.occlusion * voxels.radiance_scale * voxels.indirect_intensity);
     vec3 mirror = reflect(-s.view, s.normal);
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
@@ -127,13 +132,13 @@ void main()
 {
     uint tile = tiles[gl_WorkGroupID.x];
     uvec2 pixel = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE + gl_LocalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     uint layers[MAX_BLENDED_LAYERS];
     uint count = collect_layers(pixel, layers);
     if (count == 0u)
         return;
-    uint at = pixel.y * frame.size.x + pixel.x;
+    uint at = pixel.y * frame.render_size.x + pixel.x;
     vec3 sum = radiance[at].rgb;
     for (uint i = 0u; i < count; i++) {
         layer through;

@@ -6,28 +6,33 @@ layout(local_size_x = LINEAR_GROUP) in;
 
 layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
-    uvec4 fragment_counts;
+    uint fragment_count;    // met by rasterisation
+    uint fragment_capacity; // room for them
+    uint fragment_unused[2];
     uint fragment_words[];
 };
 
 layout(std430, binding = BIND_TILES) buffer tile_storage
 {
-    uvec4 tile_arguments; // groups in x, y, z; -
+    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_groups_y;
+    uint tile_groups_z;
+    uint tile_unused;
     uint tiles[];         // row * 65536 + column
 };
 
 void main()
 {
-    uvec2 count = (frame.size.xy + GROUP_EDGE - 1u) / GROUP_EDGE;
+    uvec2 count = (frame.render_size + GROUP_EDGE - 1u) / GROUP_EDGE;
     uint number = gl_GlobalInvocationID.x;
     if (number >= count.x * count.y)
         return;
     uvec2 tile = uvec2(number % count.x, number / count.x);
-    uvec2 last = min((tile + 1u) * GROUP_EDGE, frame.size.xy);
+    uvec2 last = min((tile + 1u) * GROUP_EDGE, frame.render_size);
     uint any_head = 0u;
     for (uint y = tile.y * GROUP_EDGE; y < last.y; y++)
         for (uint x = tile.x * GROUP_EDGE; x < last.x; x++)
-            any_head |= fragment_words[y * frame.size.x + x];
+            any_head |= fragment_words[y * frame.render_size.x + x];
     if (any_head != 0u)
-        tiles[atomicAdd(tile_arguments.x, 1u)] = tile.y * 65536u + tile.x;
+        tiles[atomicAdd(tile_count, 1u)] = tile.y * 65536u + tile.x;
 }

@@ -5,7 +5,8 @@
 
 layout(std430, binding = BIND_EXPOSURE) buffer exposure_storage
 {
-    vec4 exposure;         // x: the scale in use
+    float automatic_exposure; // the scale
+    float exposure_unused[3];
     uint histogram[HISTOGRAM_BINS];
 };
 
@@ -24,8 +25,8 @@ void main()
     barrier();
     // Each invocation looks at one of 2 x 2 pixels: plenty for a mean.
     uvec2 pixel = gl_GlobalInvocationID.xy * 2u;
-    if (all(lessThan(pixel, frame.size.xy))) {
-        float value = luminance(radiance[pixel.y * frame.size.x + pixel.x].rgb);
+    if (all(lessThan(pixel, frame.render_size))) {
+        float value = luminance(radiance[pixel.y * frame.render_size.x + pixel.x].rgb);
         if (value > 0.0 && !isinf(value)) {
             float bin = (log2(value) - LOWEST_STOP) * BINS_PER_STOP;
             atomicAdd(bins[uint(clamp(bin, 0.0, float(HISTOGRAM_BINS - 1)))], 1u);
@@ -62,6 +63,6 @@ void main()
         sum += count * ((float(i) + 0.5) / BINS_PER_STOP + LOWEST_STOP);
         histogram[i] = 0u;
     }
-    exposure.x = weight > 0.0 ? MIDDLE_GREY * exp2(-sum / weight) : 1.0;
+    automatic_exposure = weight > 0.0 ? MIDDLE_GREY * exp2(-sum / weight) : 1.0;
 }
 #endif

@@ -15,7 +15,7 @@ layout(std430, binding = BIND_OUTPUT) writeonly buffer output_storage
 
 layout(std430, binding = BIND_EXPOSURE) readonly buffer exposure_storage
 {
-    vec4 exposure;
+    float automatic_exposure;
 };
 
 vec3 radiance_at(uvec2 shown)
@@ -23,27 +23,27 @@ vec3 radiance_at(uvec2 shown)
 #if BLANK
     return vec3(0.5);
 #endif
-    if (frame.size.xy == frame.shown.xy)
-        return radiance[shown.y * frame.size.x + shown.x].rgb;
-    vec2 size = vec2(frame.size.xy);
-    vec2 at = clamp((vec2(shown) + 0.5) * size / vec2(frame.shown.xy) - 0.5, vec2(0.0), size - 1.0);
+    if (frame.render_size == frame.output_size)
+        return radiance[shown.y * frame.render_size.x + shown.x].rgb;
+    vec2 size = vec2(frame.render_size);
+    vec2 at = clamp((vec2(shown) + 0.5) * size / vec2(frame.output_size) - 0.5, vec2(0.0), size - 1.0);
     uvec2 low = uvec2(at);
-    uvec2 high = min(low + 1u, frame.size.xy - 1u);
+    uvec2 high = min(low + 1u, frame.render_size - 1u);
     vec2 part = at - vec2(low);
-    vec3 top = mix(radiance[low.y * frame.size.x + low.x].rgb,
-                   radiance[low.y * frame.size.x + high.x].rgb, part.x);
-    vec3 bottom = mix(radiance[high.y * frame.size.x + low.x].rgb,
-                      radiance[high.y * frame.size.x + high.x].rgb, part.x);
+    vec3 top = mix(radiance[low.y * frame.render_size.x + low.x].rgb,
+                   radiance[low.y * frame.render_size.x + high.x].rgb, part.x);
+    vec3 bottom = mix(radiance[high.y * frame.render_size.x + low.x].rgb,
+                      radiance[high.y * frame.render_size.x + high.x].rgb, part.x);
     return mix(top, bottom, part.y);
 }
 
 vec3 displayed(uvec2 shown)
 {
-    vec3 color = radiance_at(min(shown, frame.shown.xy - 1u));
+    vec3 color = radiance_at(min(shown, frame.output_size - 1u));
 #if DISPLAY_READY
     return clamp(color, 0.0, 1.0);
 #else
-    float scale = frame.display.x > 0.0 ? frame.display.x : exposure.x * frame.display.z;
+    float scale = frame.exposure_scale > 0.0 ? frame.exposure_scale : automatic_exposure * frame.exposure_bias;
     return transfer(tonemap(max(color, 0.0) * scale));
 #endif
 }
@@ -59,7 +59,7 @@ void main()
 {
     uvec2 block = gl_GlobalInvocationID.xy;
     uvec2 first = block * uvec2(8u, 2u);
-    if (any(greaterThanEqual(first, frame.shown.xy)))
+    if (any(greaterThanEqual(first, frame.output_size)))
         return;
     vec4 cb, cr;
     vec4 luma[4]; // two words of each of two rows
@@ -76,9 +76,9 @@ void main()
         cb[i] = dot(sum, vec3(-0.168735892, -0.331264108, 0.5)) + 128.0;
         cr[i] = dot(sum, vec3(0.5, -0.418687589, -0.081312411)) + 128.0;
     }
-    uint pitch = frame.shown.z / 4u;
-    uint chroma_pitch = frame.shown.w / 4u;
-    uint rows = (frame.shown.y + 1u) & ~1u;
+    uint pitch = frame.luma_pitch_bytes / 4u;
+    uint chroma_pitch = frame.chroma_pitch_bytes / 4u;
+    uint rows = (frame.output_size.y + 1u) & ~1u;
     uint at = first.y * pitch + block.x * 2u;
     words[at] = pack4(luma[0]);
     words[at + 1u] = pack4(luma[1]);
@@ -92,9 +92,9 @@ void main()
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.shown.xy)))
+    if (any(greaterThanEqual(pixel, frame.output_size)))
         return;
-    uint at = pixel.y * frame.shown.x + pixel.x;
+    uint at = pixel.y * frame.output_size.x + pixel.x;
 #if OUTPUT == 1
     words[at] = packUnorm4x8(vec4(displayed(pixel), 1.0));
 #else

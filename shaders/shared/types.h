@@ -1,5 +1,6 @@
-// Lets C and GLSL read the same block structs. Only mat4, vec4, uvec4 and ivec4 are used, so that
-// std140, std430 and C agree on every offset.
+// Lets C and GLSL read the same block structs. Members are mat4, vec4, scalars, uvec2, or a vec3 or
+// ivec3 with a scalar behind it, in groups of 16 bytes, so that std140, std430 and C agree on every
+// offset; a test compares them with the driver's.
 #ifndef VOXCAST_SHADERS_SHARED_TYPES_H
 #define VOXCAST_SHADERS_SHARED_TYPES_H
 
@@ -7,7 +8,13 @@
 #include <assert.h>
 #include <cglm/cglm.h>
 #include <stdint.h>
-typedef uint32_t uvec4[4];
+typedef uint32_t uint;
+typedef uint32_t uvec2[2];
+#define BLOCK_STRUCT(name) struct name
+#define BLOCK_SIZE(block, vectors)                                                                 \
+    static_assert(sizeof(struct block) == (vectors) * sizeof(vec4), #block " has no padding")
+#else
+#define BLOCK_STRUCT(name) name
 #endif
 
 #endif

@@ -9,7 +9,7 @@ layout(binding = UNIT_IDS) uniform usampler2D ids;
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.size.xy)))
+    if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     uint id = texelFetch(ids, ivec2(pixel), 0).r;
     if (id == 0u) {

@@ -19,10 +19,10 @@ void test_alpha()
 #if COLOR_CLASSES > 0
     texture_point point = texture_point(UV_VECTOR(fragment_uv), UV_VECTOR(dFdx(fragment_uv)),
                                        UV_VECTOR(dFdy(fragment_uv)), 0.0);
-    if ((material.info.z & (1u << TEXTURE_BASE_COLOR)) != 0u)
-        alpha *= sample_color(material.info.y + TEXTURE_BASE_COLOR, point).a;
+    if ((material.texture_mask & (1u << TEXTURE_BASE_COLOR)) != 0u)
+        alpha *= sample_color(material.first_texture + TEXTURE_BASE_COLOR, point).a;
 #endif
-    if (alpha < material.emission.w)
+    if (alpha < material.alpha_cutoff)
         discard;
 }
 #endif
@@ -32,19 +32,20 @@ layout(early_fragment_tests) in;
 
 layout(std430, binding = BIND_FRAGMENTS) buffer fragment_storage
 {
-    // Number of fragments met, room for them, -, -; heads of the pixels' lists (0: empty); then
-    // fragments: next + 1, visibility id.
-    uvec4 fragment_counts;
+    // `fragment_words`: heads of the pixels' lists (0: empty), then fragments: next + 1, visibility id.
+    uint fragment_count;    // met by rasterisation
+    uint fragment_capacity; // room for them
+    uint fragment_unused[2];
     uint fragment_words[];
 };
 
 void append(uint id)
 {
-    uint pixel = uint(gl_FragCoord.y) * frame.size.x + uint(gl_FragCoord.x);
-    uint slot = atomicAdd(fragment_counts.x, 1u);
-    if (slot >= fragment_counts.y)
+    uint pixel = uint(gl_FragCoord.y) * frame.render_size.x + uint(gl_FragCoord.x);
+    uint slot = atomicAdd(fragment_count, 1u);
+    if (slot >= fragment_capacity)
         return;
-    uint base = frame.size.x * frame.size.y + 2u * slot;
+    uint base = frame.render_size.x * frame.render_size.y + 2u * slot;
     fragment_words[base] = atomicExchange(fragment_words[pixel], slot + 1u);
     fragment_words[base + 1u] = id;
 }

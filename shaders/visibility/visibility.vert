@@ -1,6 +1,7 @@
 // Places vertices. In: position (local, metres), texture coordinates, the draw's record. Out: clip
 // space.
-#include "shared/bindings.h"
+#include "shared/slots.h"
+#include "shared/vertex.h"
 
 layout(location = 0) in vec3 position_local;
 layout(location = 1) in vec4 uv;

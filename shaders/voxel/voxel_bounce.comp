@@ -22,10 +22,10 @@ void main()
     uint number = gl_GlobalInvocationID.x;
     if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
         return;
-    uint cell = list_words[LIST_LIT * voxels.options.x + number];
+    uint cell = list_words[LIST_LIT * voxels.list_capacity + number];
     uint word = cells[cell * CELL_WORDS];
     uint level = word >> CELL_LEVEL_BIT;
-    if (level < voxels.options.y || level >= voxels.options.z)
+    if (level < voxels.first_level || level >= voxels.end_level)
         return;
     face_sums sums = no_face_sums();
     for (uint i = 0u; i < VOXEL_FACES; i++) {

@@ -11,7 +11,7 @@ uint allocate_cell()
     if (left > 0)
         return free_words[left - 1];
     uint cell = atomicAdd(counters[COUNTER_CELLS], 1u);
-    if (cell < voxels.counts.z)
+    if (cell < voxels.cell_capacity)
         return cell;
     atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
     return VOXEL_NONE;
@@ -23,7 +23,7 @@ void make_cell(uint number)
     ivec3 voxel;
     region_voxel(number, level, voxel);
     uint slot = voxel_slot(level, voxel);
-    uint at = voxels.levels[level].index.x + slot;
+    uint at = voxels.levels[level].first_index + slot;
     uint entry = voxel_index[at];
     if ((entry & VOXEL_TAG_SURFEL) == 0u)
         return;

@@ -14,11 +14,11 @@ layout(std430, binding = BIND_SURFELS) readonly buffer surfel_storage
 // Nothing else empties mips above a voxel that was the last in them; the others are filtered anew.
 void clear_mips(uint level, ivec3 voxel)
 {
-    if (level + 1u != voxels.shape.x)
+    if (level + 1u != voxels.cell_level_count)
         return;
-    for (uint mip = level + 1u; mip < voxels.counts.x; mip++) {
+    for (uint mip = level + 1u; mip < voxels.level_count; mip++) {
         ivec3 address = slot_address(mip, voxel_slot(mip, voxel >> int(mip - level)));
-        for (uint face = 0u; face < voxels.counts.y; face++)
+        for (uint face = 0u; face < voxels.face_count; face++)
             store_voxel_face(mip, address, face, vec4(0.0));
     }
 }
@@ -29,23 +29,23 @@ void clear_voxel(uint number)
     ivec3 voxel;
     region_voxel(number, level, voxel);
     uint slot = voxel_slot(level, voxel);
-    uint cell = voxel_index[voxels.levels[level].index.x + slot] - 1u;
+    uint cell = voxel_index[voxels.levels[level].first_index + slot] - 1u;
     uint surfel = cells[cell * CELL_WORDS + CELL_SURFEL];
     while (surfel != VOXEL_NONE) {
-        free_words[voxels.counts.z + atomicAdd(counters[COUNTER_FREE_SURFELS], 1u)] = surfel;
+        free_words[voxels.cell_capacity + atomicAdd(counters[COUNTER_FREE_SURFELS], 1u)] = surfel;
         surfel = surfels[surfel * SURFEL_WORDS + SURFEL_NEXT];
     }
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         uint record = cells[cell * CELL_WORDS + CELL_FACES + face];
         if (record != 0u)
-            free_words[voxels.counts.z + 2u * voxels.counts.w +
+            free_words[voxels.cell_capacity + 2u * voxels.surfel_capacity +
                        atomicAdd(counters[COUNTER_FREE_FACES], 1u)] = record - 1u;
     }
     cells[cell * CELL_WORDS] = VOXEL_NONE;
     free_words[atomicAdd(counters[COUNTER_FREE_CELLS], 1u)] = cell;
-    voxel_index[voxels.levels[level].index.x + slot] = 0u;
+    voxel_index[voxels.levels[level].first_index + slot] = 0u;
     ivec3 address = slot_address(level, slot);
-    for (uint face = 0u; face < voxels.counts.y; face++)
+    for (uint face = 0u; face < voxels.face_count; face++)
         store_voxel_face(level, address, face, vec4(0.0));
     clear_mips(level, voxel);
 }

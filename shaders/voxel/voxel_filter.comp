@@ -16,14 +16,14 @@ layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
     uint list_words[];
 };
 
-#define LEVEL voxels.options.y
+#define LEVEL voxels.first_level
 #define FINER (LEVEL - 1u)
 
 vec4 fetch_finer(ivec3 voxel, uint face)
 {
-    ivec4 texels = voxels.levels[FINER].texels;
+    ivec3 texels = voxels.levels[FINER].texel_origin;
     ivec3 address = slot_address(FINER, voxel_slot(FINER, voxel));
-    return texelFetch(voxel_radiance, texels.xyz + ivec3(texels.w * int(face), 0, 0) + address, 0);
+    return texelFetch(voxel_radiance, texels + ivec3(voxels.levels[FINER].face_stride * int(face), 0, 0) + address, 0);
 }
 
 // Radiance seen and share covered through one texel.
@@ -71,7 +71,7 @@ vec4 filtered_mean(ivec3 corner)
 // The mean irradiance of the voxels below, so that a level that comes to the fore is lit at once.
 void inherit_irradiance(uint slot, ivec3 corner)
 {
-    uint cell = voxel_index[voxels.levels[LEVEL].index.x + slot] - 1u;
+    uint cell = voxel_index[voxels.levels[LEVEL].first_index + slot] - 1u;
     if (cell == VOXEL_NONE)
         return;
     for (uint face = 0u; face < VOXEL_FACES; face++) {
@@ -107,7 +107,7 @@ void main()
     uint number = gl_GlobalInvocationID.x;
     if (number >= counters[COUNTER_LISTS + LEVEL * COUNTER_LIST_WORDS + 3u])
         return;
-    uint slot = list_words[LEVEL * voxels.options.x + number];
+    uint slot = list_words[LEVEL * voxels.list_capacity + number];
     ivec3 corner = slot_voxel(LEVEL, slot) * 2;
     ivec3 address = slot_address(LEVEL, slot);
 #if VOXEL_DIRECTIONS == 1
@@ -117,7 +117,7 @@ void main()
         store_voxel_face(LEVEL, address, face, filtered_face(corner, face));
 #endif
 #if CLIP_LEVELS
-    if (LEVEL < voxels.shape.x)
+    if (LEVEL < voxels.cell_level_count)
         inherit_irradiance(slot, corner);
 #endif
 }

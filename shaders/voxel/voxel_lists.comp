@@ -16,8 +16,8 @@ layout(std430, binding = BIND_VOXEL_LISTS) buffer voxel_list_storage
 void append(uint list, uint entry)
 {
     uint at = atomicAdd(counters[COUNTER_LISTS + list * COUNTER_LIST_WORDS + 3u], 1u);
-    if (at < voxels.options.x)
-        list_words[list * voxels.options.x + at] = entry;
+    if (at < voxels.list_capacity)
+        list_words[list * voxels.list_capacity + at] = entry;
     else
         atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
 }
@@ -25,14 +25,14 @@ void append(uint list, uint entry)
 // Mips and their lists follow from the coarsest level that has cells.
 bool mips_are_dirty()
 {
-    return voxels.levels[voxels.shape.x - 1u].index.w != 0u;
+    return voxels.levels[voxels.cell_level_count - 1u].dirty != 0u;
 }
 
 #if STAGE == 0
 void main()
 {
     uint list = gl_GlobalInvocationID.x;
-    if (list < (mips_are_dirty() ? uint(VOXEL_MAX_LEVELS) : voxels.shape.x))
+    if (list < (mips_are_dirty() ? uint(VOXEL_MAX_LEVELS) : voxels.cell_level_count))
         counters[COUNTER_LISTS + list * COUNTER_LIST_WORDS + 3u] = 0u;
     if (list != 0u)
         return;
@@ -40,14 +40,14 @@ void main()
     uint left = uint(max(int(counters[COUNTER_FREE_SURFELS]), 0));
     counters[COUNTER_FREE_CELLS] = cells_left;
     counters[COUNTER_FREE_FACES] = uint(max(int(counters[COUNTER_FREE_FACES]), 0));
-    counters[COUNTER_FACES] = min(counters[COUNTER_FACES], voxels.shape.z);
+    counters[COUNTER_FACES] = min(counters[COUNTER_FACES], voxels.face_capacity);
     for (uint i = 0u; i < counters[COUNTER_RETURNED_SURFELS]; i++)
-        free_words[voxels.counts.z + left++] =
-            free_words[voxels.counts.z + voxels.counts.w + i];
+        free_words[voxels.cell_capacity + left++] =
+            free_words[voxels.cell_capacity + voxels.surfel_capacity + i];
     counters[COUNTER_FREE_SURFELS] = left;
     counters[COUNTER_RETURNED_SURFELS] = 0u;
-    counters[COUNTER_CELLS] = min(counters[COUNTER_CELLS], voxels.counts.z);
-    counters[COUNTER_SURFELS] = min(counters[COUNTER_SURFELS], voxels.counts.w);
+    counters[COUNTER_CELLS] = min(counters[COUNTER_CELLS], voxels.cell_capacity);
+    counters[COUNTER_SURFELS] = min(counters[COUNTER_SURFELS], voxels.surfel_capacity);
 }
 #elif STAGE == 1
 // An invocation takes so many cells and makes room for those that are lit at once: the counter is
@@ -60,25 +60,25 @@ uint list_of(uint word)
     if (word == VOXEL_NONE)
         return VOXEL_NONE;
     uint level = word >> CELL_LEVEL_BIT;
-    ivec4 inner = voxels.levels[level].inner;
-    ivec3 inside = slot_voxel(level, word & CELL_SLOT_MASK) - inner.xyz;
-    bool filtered = all(greaterThanEqual(inside, ivec3(0))) && all(lessThan(inside, ivec3(inner.w)));
+        ivec3 inside = slot_voxel(level, word & CELL_SLOT_MASK) - voxels.levels[level].inner_origin;
+    bool filtered = all(greaterThanEqual(inside, ivec3(0))) &&
+                    all(lessThan(inside, ivec3(voxels.levels[level].inner_edge)));
     return filtered ? level : LIST_LIT;
 }
 
 void append_mips(uint slot)
 {
-    uint base = voxels.shape.x - 1u;
+    uint base = voxels.cell_level_count - 1u;
     ivec3 voxel = slot_voxel(base, slot);
-    uint bits = voxels.counts.x * voxels.options.x;
+    uint bits = voxels.level_count * voxels.list_capacity;
     uint first_bit = 0u;
-    for (uint mip = base + 1u; mip < voxels.counts.x; mip++) {
+    for (uint mip = base + 1u; mip < voxels.level_count; mip++) {
         uint coarse = voxel_slot(mip, voxel >> int(mip - base));
         uint number = first_bit + coarse;
         uint bit = 1u << (number & 31u);
         if ((atomicOr(list_words[bits + (number >> 5)], bit) & bit) == 0u)
             append(mip, coarse);
-        first_bit += 1u << (3u * voxels.levels[mip].index.y);
+        first_bit += 1u << (3u * voxels.levels[mip].edge_log2);
     }
 }
 
@@ -94,17 +94,17 @@ void main()
         uint list = list_of(word);
         lit |= list == LIST_LIT ? bit : 0u;
         filtered |= list != LIST_LIT && list != VOXEL_NONE ? bit : 0u;
-        bool base = word != VOXEL_NONE && (word >> CELL_LEVEL_BIT) == voxels.shape.x - 1u;
+        bool base = word != VOXEL_NONE && (word >> CELL_LEVEL_BIT) == voxels.cell_level_count - 1u;
         of_base |= mips && base ? bit : 0u;
     }
     uint count = uint(bitCount(lit));
     uint at = atomicAdd(counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u], count);
-    if (at + count > voxels.options.x) {
+    if (at + count > voxels.list_capacity) {
         atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
         lit = 0u;
     }
     for (; lit != 0u; lit &= lit - 1u)
-        list_words[LIST_LIT * voxels.options.x + at++] = first + uint(findLSB(lit));
+        list_words[LIST_LIT * voxels.list_capacity + at++] = first + uint(findLSB(lit));
     for (; filtered != 0u; filtered &= filtered - 1u) {
         uint word = cells[(first + uint(findLSB(filtered))) * CELL_WORDS];
         append(word >> CELL_LEVEL_BIT, word & CELL_SLOT_MASK);
@@ -117,7 +117,7 @@ void main()
 {
     if (gl_GlobalInvocationID.x != 0u)
         return;
-    counters[COUNTER_TILES] = min(counters[COUNTER_TILES], voxels.work.w);
+    counters[COUNTER_TILES] = min(counters[COUNTER_TILES], voxels.tile_capacity);
     counters[COUNTER_TILES + 1] = 1u;
     counters[COUNTER_TILES + 2] = 1u;
 }
@@ -130,7 +130,7 @@ void main()
     if (list >= uint(VOXEL_MAX_LEVELS))
         return;
     uint at = COUNTER_LISTS + list * COUNTER_LIST_WORDS;
-    uint count = min(counters[at + 3u], voxels.options.x);
+    uint count = min(counters[at + 3u], voxels.list_capacity);
     counters[at] = (count + LINEAR_GROUP - 1u) / LINEAR_GROUP;
     counters[at + 1u] = 1u;
     counters[at + 2u] = 1u;

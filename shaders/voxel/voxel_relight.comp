@@ -9,6 +9,7 @@
 #define SHADOW_TAPS 2u
 #define VIEWLESS 1
 #include "lib/lighting.glsl"
+#include "shared/material_block.h"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
@@ -56,27 +57,27 @@ void add_surfel(inout side s, uint word, material_block m, bool directly, float 
     float inverse = 1.0 / (255.0 * weight);
     vec3 base = m.base_color.rgb;
     float opacity = 1.0;
-    vec3 emission = directly ? vec3(0.0) : m.emission.rgb;
+    vec3 emission = directly ? vec3(0.0) : m.emission;
 #if VOXEL_COLORS
     base *= signed_sum(word + SURFEL_COLOR) * inverse;
     emission *= signed_sum(word + SURFEL_EMISSION) * inverse;
     opacity = float(surfels[word + SURFEL_OPACITY]) * inverse;
 #endif
-    uint alpha = m.info.x & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK);
+    uint alpha = m.flags & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK);
     opacity = alpha != 0u ? clamp(opacity * m.base_color.a, 0.0, 1.0) : 1.0;
-    float transmission = m.dielectric.z * (1.0 - m.means.x);
+    float transmission = m.transmission * (1.0 - m.mean_metallic);
     // Mean reflectance over the hemisphere: the dielectric layer's, then the diffuse base, of which the
     // layer holds back what Schlick has of v.h (0.0037 of the rise, see mean_diffuse_share()), or the
     // metal; metallic and roughness as they are on average.
-    bool plain = (m.info.x & MATERIAL_IOR_ONE) != 0u;
-    vec3 f0 = plain ? vec3(0.0) : min(m.dielectric.x * m.specular_color.rgb, 1.0) * m.dielectric.y;
-    float f90 = plain ? 0.0 : m.dielectric.y;
-    vec2 share = mean_specular_share(m.means.y);
+    bool plain = (m.flags & MATERIAL_IOR_ONE) != 0u;
+    vec3 f0 = plain ? vec3(0.0) : min(m.f0 * m.specular_color, 1.0) * m.specular;
+    float f90 = plain ? 0.0 : m.specular;
+    vec2 share = mean_specular_share(m.mean_roughness);
     vec3 held = mix(f0, vec3(f90), 0.0037);
     vec3 dielectric = f0 * share.x + f90 * share.y +
                       base * (1.0 - transmission) * (1.0 - max(held.r, max(held.g, held.b)));
-    vec3 reflectance = mix(dielectric, base * share.x + share.y, m.means.x);
-    bool unlit = (m.info.x & MATERIAL_SHADING_MASK) == SHADE_UNLIT;
+    vec3 reflectance = mix(dielectric, base * share.x + share.y, m.mean_metallic);
+    bool unlit = (m.flags & MATERIAL_SHADING_MASK) == SHADE_UNLIT;
     s.weight += weight;
     s.mask |= surfels[word + SURFEL_MASK];
     s.normal += signed_sum(word + SURFEL_NORMAL) * turn;
@@ -122,7 +123,7 @@ vec3 direct_irradiance(vec3 position, vec3 normal, bool thin, float voxel_m)
         s.position = position + (axes[0] * at.x + axes[1] * at.y + normal * TAP_LIFT) * voxel_m;
         sum += direct_light(s, uvec2(0u));
     }
-    return sum / (float(TAPS) * voxels.anchor.w);
+    return sum / (float(TAPS) * voxels.radiance_scale);
 #else
     return vec3(0.0);
 #endif
@@ -133,10 +134,10 @@ void main()
     uint number = gl_GlobalInvocationID.x;
     if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
         return;
-    uint cell = list_words[LIST_LIT * voxels.options.x + number];
+    uint cell = list_words[LIST_LIT * voxels.list_capacity + number];
     uint slot = cells[cell * CELL_WORDS] & CELL_SLOT_MASK;
     uint level = cells[cell * CELL_WORDS] >> CELL_LEVEL_BIT;
-    if (level < voxels.options.y || level >= voxels.options.z)
+    if (level < voxels.first_level || level >= voxels.end_level)
         return;
 #if FRESH
     for (uint i = 0u; i < VOXEL_FACES; i++)
@@ -159,11 +160,11 @@ void main()
          at = surfels[at * SURFEL_WORDS + SURFEL_NEXT]) {
         uint word = at * SURFEL_WORDS;
         uint key = surfels[word + SURFEL_KEY];
-        uint surface_word = surfaces[voxels.options.w + (key >> 3)];
+        uint surface_word = surfaces[voxels.instance_count + (key >> 3)];
         material_block m = materials[surface_word & SURFACE_MATERIAL_MASK];
         bool directly = (surface_word & SURFACE_LIT_DIRECTLY) != 0u;
         add_surfel(sides[key & 7u], word, m, directly, 1.0);
-        if ((m.info.x & MATERIAL_DOUBLE_SIDED) != 0u) {
+        if ((m.flags & MATERIAL_DOUBLE_SIDED) != 0u) {
             add_surfel(sides[(key & 7u) ^ 1u], word, m, directly, -1.0);
             sides[key & 7u].thin = true;
             sides[(key & 7u) ^ 1u].thin = true;
@@ -184,11 +185,11 @@ void main()
         float inverse = 1.0 / sides[i].weight;
         vec3 normal = safe_normalize(sides[i].normal, face_direction(i));
         vec3 place = clamp(sides[i].place * inverse, 0.0, 1.0);
-        vec3 position = voxels.anchor.xyz + (corner + place) * voxels.levels[level].size.x;
+        vec3 position = voxels.anchor + (corner + place) * voxels.levels[level].voxel_edge_m;
         vec3 albedo = clamp(sides[i].reflectance * inverse, 0.0, 1.0);
-        vec3 direct = sides[i].emission * (inverse / voxels.anchor.w) +
+        vec3 direct = sides[i].emission * (inverse / voxels.radiance_scale) +
                       albedo * direct_irradiance(position, normal, sides[i].thin,
-                                                 voxels.levels[level].size.x);
+                                                 voxels.levels[level].voxel_edge_m);
         // In proportion to what is covered: the parts of a slanted wall that lie in neighbouring
         // voxels then add up to a whole one.
         float opacity = min(sides[i].opacity * inverse, 1.0);

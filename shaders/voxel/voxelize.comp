@@ -1,5 +1,5 @@
 // Enters triangles into the voxels that they overlap. In: geometry, materials' textures, regions and
-// chunks of triangles. Out: surfels, and the index with each touched voxel's first surfel.
+// batches of triangles. Out: surfels, and the index with each touched voxel's first surfel.
 //
 // LARGE 0: an invocation takes a triangle, walks the columns of voxels along its dominant axis, and
 // leaves triangles of many columns as tiles. LARGE 1: a group takes a tile, an invocation a column.
@@ -10,7 +10,7 @@
 #if LARGE
 layout(local_size_x = VOXEL_TILE_EDGE, local_size_y = VOXEL_TILE_EDGE) in;
 #else
-layout(local_size_x = VOXEL_CHUNK) in;
+layout(local_size_x = VOXEL_BATCH) in;
 #endif
 
 layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
@@ -20,7 +20,7 @@ layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
 
 layout(std430, binding = BIND_VOXEL_TILES) buffer tile_storage
 {
-    uvec4 tiles[]; // instance, triangle, region, column a | column b << 16 (in tiles)
+    voxel_tile tiles[];
 };
 
 // A triangle ready to be walked. Axes a and b span the columns; c is the dominant axis.
@@ -72,22 +72,22 @@ uint mask_from_abc(uint mask, uint axis)
 }
 
 // False for a triangle that has no area or is not finite, and for one outside the region.
-bool begin_walk(uvec4 chunk, uint triangle_number, out walk w)
+bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
 {
-    w.instance = chunk.x;
-    uint first = instances[w.instance].info.x + 3u * triangle_number;
+    w.instance = instance;
+    uint first = instances[w.instance].first_index + 3u * triangle_number;
     w.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
-    w.level = uint(regions[chunk.w].low.w);
+    w.level = regions[region].level;
     w.spare = VOXEL_NONE;
     mat4 m = instances[w.instance].world_from_local;
     dvec3 columns[4] = {dvec3(m[0].xyz), dvec3(m[1].xyz), dvec3(m[2].xyz), dvec3(m[3].xyz)};
-    double edge = double(voxels.levels[w.level].size.x);
+    double edge = double(voxels.levels[w.level].voxel_edge_m);
     dvec3 v[3];
     for (int i = 0; i < 3; i++) {
         dvec3 local = dvec3(fetch3(w.words[i]));
         precise dvec3 world = columns[0] * local.x + columns[1] * local.y + columns[2] * local.z +
                               columns[3];
-        v[i] = (world - dvec3(voxels.anchor.xyz)) / edge;
+        v[i] = (world - dvec3(voxels.anchor)) / edge;
     }
     precise dvec3 normal = cross(v[1] - v[0], v[2] - v[0]);
     vec3 n = vec3(normal);
@@ -96,7 +96,7 @@ bool begin_walk(uvec4 chunk, uint triangle_number, out walk w)
         return false;
     w.area = 0.5 * size;
     w.normal = n / size;
-    if ((instances[w.instance].info.w & INSTANCE_MIRRORED) != 0u)
+    if ((instances[w.instance].flags & INSTANCE_MIRRORED) != 0u)
         w.normal = -w.normal;
     w.key = instance_surfaces[w.instance] * 8u + dominant_face(w.normal);
     w.axis = dominant_face(w.normal) >> 1u;
@@ -105,8 +105,8 @@ bool begin_walk(uvec4 chunk, uint triangle_number, out walk w)
     w.t.normal = to_abc(normal, w.axis);
     w.t.low = min(min(w.t.v[0], w.t.v[1]), w.t.v[2]);
     w.t.high = max(max(w.t.v[0], w.t.v[1]), w.t.v[2]);
-    ivec3 region_low = to_abc(regions[chunk.w].low.xyz, w.axis);
-    ivec3 region_high = region_low + to_abc(regions[chunk.w].size.xyz, w.axis) - 1;
+    ivec3 region_low = to_abc(regions[region].low, w.axis);
+    ivec3 region_high = region_low + to_abc(regions[region].size, w.axis) - 1;
     // Clamped before the conversion, so that nothing overflows.
     dvec3 least = clamp(ceil(w.t.low) - 1.0lf, dvec3(region_low), dvec3(region_high) + 1.0lf);
     dvec3 most = clamp(floor(w.t.high), dvec3(region_low) - 1.0lf, dvec3(region_high));
@@ -136,14 +136,14 @@ void square_footprint(inout texture_point point, UV_VECTOR dx, UV_VECTOR dy)
 // Textures at the level that fits the voxel, at a place on the triangle.
 void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
 {
-    material_block material = materials[instances[w.instance].info.y];
+    material_block material = materials[instances[w.instance].material];
     vec4 base = vec4(1.0);
 #if VERTEX_COLORS
     base = fetch4(w.words.x + VERTEX_COLOR) * weights.x + fetch4(w.words.y + VERTEX_COLOR) * weights.y +
            fetch4(w.words.z + VERTEX_COLOR) * weights.z;
 #endif
 #if COLOR_CLASSES > 0
-    if ((material.info.z & COLOR_TEXTURE_SLOTS) != 0u) {
+    if ((material.texture_mask & COLOR_TEXTURE_SLOTS) != 0u) {
         texture_point point;
         point.level_dither = 0.0;
 #if SECOND_UV_SET
@@ -159,9 +159,9 @@ void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
         point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
         square_footprint(point, ((uv[1] - uv[0]) * e2.y - (uv[2] - uv[0]) * e1.y) * inverse,
                          ((uv[2] - uv[0]) * e1.x - (uv[1] - uv[0]) * e2.x) * inverse);
-        for (uint slots = material.info.z & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
+        for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
             uint slot = uint(findLSB(slots));
-            vec4 texel = sample_color(material.info.y + slot, point);
+            vec4 texel = sample_color(material.first_texture + slot, point);
             base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
             f.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
         }
@@ -202,7 +202,7 @@ void add_voxel(inout walk w, ivec3 voxel, uint mask)
     sample_surface(w, weights / (weights.x + weights.y + weights.z), f);
 #endif
     ivec3 place = from_abc(voxel, w.axis);
-    uint word = voxels.levels[w.level].index.x + voxel_slot(w.level, place);
+    uint word = voxels.levels[w.level].first_index + voxel_slot(w.level, place);
     uint surfel = find_surfel(word, w.key, w.spare);
     if (surfel != VOXEL_NONE)
         add_fragment(surfel, f);
@@ -231,11 +231,11 @@ void walk_column(inout walk w, ivec2 column)
 #if LARGE
 void main()
 {
-    uvec4 tile = tiles[gl_WorkGroupID.x];
+    voxel_tile tile = tiles[gl_WorkGroupID.x];
     walk w;
-    if (!begin_walk(uvec4(tile.x, 0u, 0u, tile.z), tile.y, w))
+    if (!begin_walk(tile.instance, tile.triangle, tile.region, w))
         return;
-    ivec2 column = w.low.xy + ivec2(tile.w & 0xffffu, tile.w >> 16) * VOXEL_TILE_EDGE +
+    ivec2 column = w.low.xy + ivec2(tile.columns & 0xffffu, tile.columns >> 16) * VOXEL_TILE_EDGE +
                    ivec2(gl_LocalInvocationID.xy);
     if (all(lessThanEqual(column, w.high.xy)))
         walk_column(w, column);
@@ -248,31 +248,31 @@ bool leave_tiles(walk w, uint triangle_number, uint region)
     uvec2 count = uvec2(w.high.xy - w.low.xy) / VOXEL_TILE_EDGE + 1u;
     uint total = count.x * count.y;
     uint first = atomicAdd(counters[COUNTER_TILES], total);
-    if (first + total > voxels.work.w) {
+    if (first + total > voxels.tile_capacity) {
         // Slots below the capacity must hold something harmless: the same tile does no harm.
-        for (uint i = first; i < min(first + total, voxels.work.w); i++)
-            tiles[i] = uvec4(w.instance, triangle_number, region, 0xffffffffu);
+        for (uint i = first; i < min(first + total, voxels.tile_capacity); i++)
+            tiles[i] = voxel_tile(w.instance, triangle_number, region, 0xffffffffu);
         return false;
     }
     for (uint i = 0u; i < total; i++)
-        tiles[first + i] = uvec4(w.instance, triangle_number, region,
+        tiles[first + i] = voxel_tile(w.instance, triangle_number, region,
                                  (i % count.x) | ((i / count.x) << 16));
     return true;
 }
 
 void main()
 {
-    uvec4 chunk = chunks[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x];
-    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= voxels.work.z ||
-        gl_LocalInvocationID.x >= chunk.z)
+    voxel_batch batch = batches[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x];
+    if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= voxels.batch_count ||
+        gl_LocalInvocationID.x >= batch.triangle_count)
         return;
-    uint triangle_number = chunk.y + gl_LocalInvocationID.x;
+    uint triangle_number = batch.first_triangle + gl_LocalInvocationID.x;
     walk w;
-    if (!begin_walk(chunk, triangle_number, w))
+    if (!begin_walk(batch.instance, triangle_number, batch.region, w))
         return;
     ivec2 size = w.high.xy - w.low.xy + 1;
     int count = size.x * size.y;
-    if (count > VOXEL_SMALL_COLUMNS && leave_tiles(w, triangle_number, chunk.w))
+    if (count > VOXEL_SMALL_COLUMNS && leave_tiles(w, triangle_number, batch.region))
         return;
     for (int i = 0; i < count; i++)
         walk_column(w, w.low.xy + ivec2(i % size.x, i / size.x));

@@ -74,7 +74,7 @@ static struct frame begin(struct voxel_rig *rig, struct voxel_volume *volume)
 static void bind(struct voxel_rig *rig, struct voxel_volume *volume)
 {
     struct frame_block block = {0};
-    block.textures[0] = 1.0f;
+    block.texture_max_anisotropy = 1.0f;
     gpu_buffer_write(rig->view->frame_block, 0, sizeof(block), &block);
     resident_bind(rig->resident);
     view_bind(rig->view);

@@ -388,9 +388,9 @@ static float *unwrap(const struct texels *texels, const struct voxel_level_block
                 const int32_t place[3] = {x, y, z};
                 int32_t at[3];
                 for (int axis = 0; axis < 3; axis++)
-                    at[axis] = level->texels[axis] +
+                    at[axis] = level->texel_origin[axis] +
                                ((level->origin[axis] + place[axis]) & (int32_t)(EDGE - 1));
-                at[0] += level->texels[3] * (int32_t)face;
+                at[0] += level->face_stride * (int32_t)face;
                 memcpy(out, texel_at(texels, at), 4 * sizeof(float));
                 out += 4;
             }
@@ -438,9 +438,9 @@ static void test_filtering_across_the_seam(void **state)
                 // As sample_level() in shaders/lib/cone.glsl.
                 for (int axis = 0; axis < 3; axis++) {
                     double voxel = level->origin[axis] + place[axis];
-                    at[axis] = voxel - floor(voxel / EDGE) * EDGE + level->texels[axis];
+                    at[axis] = voxel - floor(voxel / EDGE) * EDGE + level->texel_origin[axis];
                 }
-                at[0] += (double)level->texels[3] * face;
+                at[0] += (double)level->face_stride * face;
                 filter(&texels, at, found);
                 // The filter's last neighbour has no weight where it lies beyond the rim.
                 for (int axis = 0; axis < 3; axis++)

@@ -1,16 +1,8 @@
-// Layout of the voxels' buffers: stated once for C and GLSL. ARCHITECTURE.md tells what they are
-// for.
-#ifndef VOXCAST_SHADERS_SHARED_VOXEL_H
-#define VOXCAST_SHADERS_SHARED_VOXEL_H
+// Layouts of the voxels' buffers, for C and GLSL. ARCHITECTURE.md tells what they are for.
+#ifndef VOXCAST_SHADERS_SHARED_VOXEL_RECORDS_H
+#define VOXCAST_SHADERS_SHARED_VOXEL_RECORDS_H
 
-#include "shared/types.h"
-
-#define VOXEL_MAX_LEVELS 12
-#define VOXEL_MAX_CONES  32
-#define VOXEL_FACES      6
-
-// Optical depth across a voxel that is covered all over: what leaks through is e^-8, 0.03 %.
-#define VOXEL_MAX_DEPTH 8.0
+#include "shared/voxel_block.h"
 
 // A voxel's word in the index: 0 empty, 1 + cell, or while geometry is being added the first
 // surfel.
@@ -97,56 +89,7 @@
 // from the finer level.
 #define LIST_LIT 0
 
-// Triangles that span more columns of voxels are cut into tiles of so many columns.
-#define VOXEL_SMALL_COLUMNS 12
-#define VOXEL_TILE_EDGE     8
-#define VOXEL_MAX_REGIONS   96
-#define VOXEL_CHUNK         64 // triangles
-
 #define SURFACE_MATERIAL_MASK 0x0fffffffu
 #define SURFACE_LIT_DIRECTLY  0x80000000u // its emission reaches others as a planar emitter's
-
-struct voxel_level_block {
-    ivec4 origin; // lowest voxel in voxels of this level from the anchor; w: voxels along an edge
-    ivec4 inner;  // lowest voxel that the finer level fills; w: how many along an edge, 0 none
-    ivec4 texels; // first texel of face 0 behind the border; w: texels from face to face
-    uvec4
-        index; // first word in the index; log2 of the edge; 1 if addresses wrap; 1 if any is dirty
-    vec4 size; // voxel edge in m, its inverse, unused, unused
-};
-
-#ifdef __STDC__
-#define BLOCK_STRUCT(name) struct name
-#else
-#define BLOCK_STRUCT(name) name
-#endif
-
-struct voxel_block {
-    vec4 anchor;  // world; w: scale: radiance is stored divided by it
-    uvec4 counts; // levels, faces in the texture, capacity of cells, capacity of surfels
-    uvec4 work;   // regions, voxels in them, chunks, capacity of tiles
-    uvec4 cache;  // generation, frame, budget of entries, 1 if bounces feed back
-    vec4 light;   // reach of ambient occlusion in m, intensity of indirect light, roughness above
-                  // which gloss takes the cache's light, widest cone in m
-    vec4 settle;  // brightest light of the former generation / scale, pictures in pixels' sums,
-                  // reflectance below which gloss takes the cache's light, unused
-    vec4 march;   // of the cache's cones: step over diameter, start offset in voxels, their number,
-                  // tangent of the half-angle
-    vec4 pixel_march; // of the cones that start at pixels, likewise
-    uvec4 shape; // levels that have cells of their own: those beyond are mips of the last; words of
-                 // a face record; their capacity; epoch of geometry
-    uvec4 options; // capacity of lists; first level to light, or the one to filter; end of those;
-                   // instances
-    vec4 cones[VOXEL_MAX_CONES]; // direction about +Z; w: weight, cosine over the sum of cosines
-    vec4 pixel_cones[VOXEL_MAX_CONES];
-    BLOCK_STRUCT(voxel_level_block) levels[VOXEL_MAX_LEVELS];
-};
-
-#ifdef __STDC__
-static_assert(sizeof(struct voxel_level_block) == 5 * sizeof(vec4), "no padding");
-static_assert(sizeof(struct voxel_block) ==
-                  (10 + 2 * VOXEL_MAX_CONES + 5 * VOXEL_MAX_LEVELS) * sizeof(vec4),
-              "no padding");
-#endif
 
 #endif

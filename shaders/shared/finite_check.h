@@ -1,0 +1,31 @@
+// What the check for values that are not finite reads and writes, for C and GLSL; std430.
+#ifndef VOXCAST_SHADERS_SHARED_FINITE_CHECK_H
+#define VOXCAST_SHADERS_SHARED_FINITE_CHECK_H
+
+#include "shared/types.h"
+
+// Of one dispatch.
+struct finite_check_shape {
+    uint length; // words, or texels
+    uint record_words;
+    uint result; // the one to write
+    uint texture_level;
+};
+
+// Words of a record that hold floats, or halves in their low or high bits; the last bit tells of
+// the rest.
+struct finite_check_masks {
+    uint floats;
+    uint low_halves;
+    uint high_halves;
+    uint unused;
+};
+
+struct finite_check_result {
+    uint count; // values that are not finite
+    uint first; // word or texel
+    uint unused_0;
+    uint unused_1;
+};
+
+#endif

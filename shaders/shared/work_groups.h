@@ -1,0 +1,10 @@
+// Sizes of work groups and what follows from them, for C and GLSL.
+#ifndef VOXCAST_SHADERS_SHARED_WORK_GROUPS_H
+#define VOXCAST_SHADERS_SHARED_WORK_GROUPS_H
+
+#define GROUP_EDGE      8
+#define LIGHT_TILE_EDGE 16
+#define LINEAR_GROUP    64
+#define HISTOGRAM_BINS  128
+
+#endif
