@@ -40,7 +40,9 @@ vec3 number_color(uint number)
 // Black, blue, green, yellow, red for 0 .. 1.
 vec3 heat(float x)
 {
-    return clamp(vec3(2.0 * x - 0.7, 2.0 * x * (x < 0.75 ? 1.0 : 4.0 - 4.0 * x), x < 0.5 ? 4.0 * x * (1.0 - 2.0 * x) + x * 0.5 : 0.0), 0.0, 1.0);
+    return clamp(vec3(2.0 * x - 0.7, 2.0 * x * (x < 0.75 ? 1.0 : 4.0 - 4.0 * x),
+                      x < 0.5 ? 4.0 * x * (1.0 - 2.0 * x) + x * 0.5 : 0.0),
+                 0.0, 1.0);
 }
 
 uint lights_of_tile(uvec2 pixel)

@@ -2,8 +2,8 @@
 // first is.
 //
 // TEXTURE 0: a buffer of records, of which masks tell the words that are floats and those of which
-// the low or the high half is a half float. TEXTURE 1, 2, 3: a 2D texture, an array, a 3D texture of
-// floats.
+// the low or the high half is a half float. TEXTURE 1, 2, 3: a 2D texture, an array, a 3D texture
+// of floats.
 #include "shared/finite_check.h"
 #include "shared/slots.h"
 #include "shared/work_groups.h"
@@ -15,7 +15,8 @@ layout(std430, binding = BIND_CHECK) buffer check_storage
     finite_check_shape shape;
     finite_check_masks masks;
     finite_check_result results[];
-} check;
+}
+check;
 
 #if TEXTURE == 0
 layout(std430, binding = BIND_CHECKED) readonly buffer checked_storage

@@ -1,8 +1,8 @@
-// What the pixels of each tile of GROUP_EDGE^2 call for, in one colour: matte surfaces green, glossy
-// ones, which have a reflection of their own, blue, transparent layers cyan, emission yellow, and magenta
-// where a tile holds more than one of these; background dark grey. In: G-buffer, heads of the lists of
-// transparent layers (LAYERS 1). Out: radiance, as values that are shown without exposure and tone
-// curve.
+// What the pixels of each tile of GROUP_EDGE^2 call for, in one colour: matte surfaces green,
+// glossy ones, which have a reflection of their own, blue, transparent layers cyan, emission
+// yellow, and magenta where a tile holds more than one of these; background dark grey. In:
+// G-buffer, heads of the lists of transparent layers (LAYERS 1). Out: radiance, as values that are
+// shown without exposure and tone curve.
 #include "lib/gbuffer.glsl"
 #include "lib/radiance.glsl"
 
@@ -30,7 +30,8 @@ uint pixel_classes(uvec2 pixel, surface s)
     uint classes = 0u;
     if (s.shading < SHADE_UNLIT) {
         bool reflects = s.metallic > 0.0 || s.f90 > 0.0;
-        classes = reflects && s.roughness <= frame.specular_max_roughness ? CLASS_GLOSSY : CLASS_MATTE;
+        classes =
+            reflects && s.roughness <= frame.specular_max_roughness ? CLASS_GLOSSY : CLASS_MATTE;
     }
     if (s.shading != SHADE_BACKGROUND && any(greaterThan(s.emission, vec3(0.0))))
         classes = CLASS_EMISSIVE;

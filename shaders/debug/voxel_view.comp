@@ -1,10 +1,11 @@
-// The voxels of one level as a ray meets them. In: index, cells, face records, radiance texture. Out:
-// radiance, as light (SHOW 3 and 4) or as values that are shown without exposure and tone curve.
+// The voxels of one level as a ray meets them. In: index, cells, face records, radiance texture.
+// Out: radiance, as light (SHOW 3 and 4) or as values that are shown without exposure and tone
+// curve.
 //
 // SHOW 0: opacity 1 - exp(-depth) of the chosen face; 1: its albedo; 2: its mean normal; 3: its
-// radiance; 4: its cached irradiance / pi. CELLS 0: a mip level, which has opacity and radiance alone;
-// a checker stands for the rest. Where a voxel has no surface that faces the chosen way, it is shown
-// dimmed by the face that looks most towards the eye.
+// radiance; 4: its cached irradiance / pi. CELLS 0: a mip level, which has opacity and radiance
+// alone; a checker stands for the rest. Where a voxel has no surface that faces the chosen way, it
+// is shown dimmed by the face that looks most towards the eye.
 #define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 #include "lib/display.glsl"
@@ -23,9 +24,9 @@ const float LEAST_SHARE = 0.03;
 struct voxel_hit {
     bool found;
     ivec3 voxel;
-    bvec3 side;  // axis of the face that was entered
-    float t;     // along the ray, whose forward part is 1
-    vec3 place;  // within the voxel
+    bvec3 side; // axis of the face that was entered
+    float t;    // along the ray, whose forward part is 1
+    vec3 place; // within the voxel
 };
 
 // Light times depth, and depth.
@@ -33,7 +34,9 @@ vec4 face_texel(uint level, ivec3 voxel, uint face)
 {
     ivec3 texels = voxels.levels[level].texel_origin;
     ivec3 address = slot_address(level, voxel_slot(level, voxel));
-    return texelFetch(voxel_radiance, texels + ivec3(voxels.levels[level].face_stride * int(face), 0, 0) + address, 0);
+    return texelFetch(voxel_radiance,
+                      texels + ivec3(voxels.levels[level].face_stride * int(face), 0, 0) + address,
+                      0);
 }
 
 float total_depth(uint level, ivec3 voxel)
@@ -53,8 +56,9 @@ bool is_occupied(uint level, ivec3 voxel)
 #endif
 }
 
-// The first occupied voxel but for those next to the eye, which would hide the rest (Amanatides and Woo 1987, "A Fast Voxel
-// Traversal Algorithm for Ray Tracing"). Origin and direction in voxels of the level.
+// The first occupied voxel but for those next to the eye, which would hide the rest (Amanatides and
+// Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing"). Origin and direction in voxels of
+// the level.
 voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
 {
     voxel_hit hit;
@@ -104,8 +108,8 @@ bool face_has_surface(uint level, ivec3 voxel, uint cell, uint face, float least
 #endif
 }
 
-// The chosen face, or the one of those with a surface that looks most against the ray; VOXEL_NONE if
-// the voxel has no surface.
+// The chosen face, or the one of those with a surface that looks most against the ray; VOXEL_NONE
+// if the voxel has no surface.
 uint shown_face(uint level, ivec3 voxel, uint cell, uint chosen, vec3 direction)
 {
     float least = 0.0;
@@ -139,7 +143,8 @@ uint record_with_albedo(uint level, ivec3 voxel, uint face, uint words)
         ivec3 corner = 2 * voxel;
         for (int i = 0; i < 8; i++) {
             ivec3 child = corner + ivec3(i & 1, (i >> 1) & 1, i >> 2);
-            uint cell = voxel_in_level(finer - 1u, child) ? find_cell(finer - 1u, child) : VOXEL_NONE;
+            uint cell =
+                voxel_in_level(finer - 1u, child) ? find_cell(finer - 1u, child) : VOXEL_NONE;
             uint record = cell == VOXEL_NONE ? VOXEL_NONE : cell_face(cell, face);
             if (record != VOXEL_NONE && faces[record + FACE_NORMAL] != VOXEL_NONE) {
                 found = record;

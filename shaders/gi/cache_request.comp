@@ -1,5 +1,5 @@
-// Pixels ask for the voxel faces they see: one pixel of each REQUEST_EDGE^2, another each frame. In:
-// G-buffer, cells. Out: the faces' newest request.
+// Pixels ask for the voxel faces they see: one pixel of each REQUEST_EDGE^2, another each frame.
+// In: G-buffer, cells. Out: the faces' newest request.
 #include "lib/gbuffer.glsl"
 #include "lib/irradiance.glsl"
 

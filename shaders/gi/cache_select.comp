@@ -1,9 +1,9 @@
 // Chooses which cached irradiances to trace next. In: lists of lit cells, cells. Out: queue of cell
 // faces by class of urgency.
 //
-// STAGE 0: faces whose cones have not been traced through the geometry as it is, and faces whose light
-// is not of this generation; those that pixels have asked for first, among them the new before those
-// that changed much before the rest. STAGE 1: arguments of the passes over them.
+// STAGE 0: faces whose cones have not been traced through the geometry as it is, and faces whose
+// light is not of this generation; those that pixels have asked for first, among them the new
+// before those that changed much before the rest. STAGE 1: arguments of the passes over them.
 #define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 

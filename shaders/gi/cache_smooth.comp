@@ -1,6 +1,6 @@
-// Averages each voxel face's light with its neighbours' in the face's plane, with weights 1 2 1: the
-// cones of neighbours are turned against each other in a pattern that repeats after two voxels, which
-// these weights cancel. In: list of lit cells, face records. Out: the light that pixels see.
+// Averages each voxel face's light with its neighbours' in the face's plane, with weights 1 2 1:
+// the cones of neighbours are turned against each other in a pattern that repeats after two voxels,
+// which these weights cancel. In: list of lit cells, face records. Out: the light that pixels see.
 #include "lib/voxel_cells.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
@@ -42,8 +42,8 @@ void main()
                 faces[from + FACE_NORMAL] == VOXEL_NONE)
                 continue;
             vec3 its = octahedral_decode(unpackSnorm2x16(faces[from + FACE_NORMAL]));
-            float share = (step.x == 0 || step.y == 0 ? 2.0 : 1.0) *
-                          smoothstep(0.7, 0.95, dot(normal, its));
+            float share =
+                (step.x == 0 || step.y == 0 ? 2.0 : 1.0) * smoothstep(0.7, 0.95, dot(normal, its));
             sum += share * face_light(from);
             weight += share;
         }

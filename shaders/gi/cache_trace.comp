@@ -1,5 +1,5 @@
-// Finds the light of the chosen voxel faces. In: queue, face records, radiance texture. Out: the faces'
-// irradiance and how much it changed.
+// Finds the light of the chosen voxel faces. In: queue, face records, radiance texture. Out: the
+// faces' irradiance and how much it changed.
 //
 // MARCH 1: traces their cones, and keeps where each hits. MARCH 0: looks the light up at the hits.
 #define CONE_SMOOTH 0
@@ -64,8 +64,8 @@ void main()
     // Neighbours look in different directions, so that interpolation between them averages more.
     ivec3 odd = ivec3(corner) & 1;
     float angle = float(odd.x + 2 * odd.y + 4 * odd.z) * (PI / 4.0);
-    gather_cones g = begin_gather(position, normal, (bits & FACE_THIN) != 0u,
-                                  vec2(cos(angle), sin(angle)));
+    gather_cones g =
+        begin_gather(position, normal, (bits & FACE_THIN) != 0u, vec2(cos(angle), sin(angle)));
     gathered found = no_light();
 #if MARCH
     gathered along = no_light();
@@ -101,8 +101,8 @@ void main()
                                 (relative_change(before, light) << FACE_CHANGE_BIT) | FACE_VALID |
                                 FACE_MARCHED | (epoch << FACE_EPOCH_BIT);
     // What is darker than a hundredth of the brightest must not keep the whole from being done.
-    float change = luminance(abs(light - before)) /
-                   max(luminance(light) + 0.01 * voxels.peak_radiance, 1e-9);
+    float change =
+        luminance(abs(light - before)) / max(luminance(light) + 0.01 * voxels.peak_radiance, 1e-9);
     atomicMax(counters[COUNTER_CACHE_CHANGE], floatBitsToUint(change));
     atomicMax(counters[COUNTER_CACHE_PEAK], floatBitsToUint(luminance(light)));
 }

@@ -1,6 +1,6 @@
 // Averages what rays from pixels have found over the neighbours that lie on the same surface. In:
-// G-buffer, sums. Out: means. GLOSS 0: irradiance; 1: what lobes mirror, where smooth surfaces keep their
-// own.
+// G-buffer, sums. Out: means. GLOSS 0: irradiance; 1: what lobes mirror, where smooth surfaces keep
+// their own.
 #include "lib/gbuffer.glsl"
 #include "lib/gathered.glsl"
 #include "lib/gloss_rule.glsl"

@@ -11,7 +11,7 @@ layout(std430, binding = BIND_TILES) buffer tile_storage
     uint tile_groups_y;
     uint tile_groups_z;
     uint tile_unused;
-    uint tiles[];         // row * 65536 + column
+    uint tiles[]; // row * 65536 + column
 };
 
 shared uint any_glossy;

@@ -1,9 +1,9 @@
 // Adds indirect diffuse light, or writes it where it is shown ALONE. In: G-buffer; irradiance cache
-// (CACHED 1), or what pixels have gathered themselves, every one (GATHER_STEP 1) or every fourth (2),
-// as sums or as means of neighbours (FILTERED 1). Out: radiance in cd/m^2.
+// (CACHED 1), or what pixels have gathered themselves, every one (GATHER_STEP 1) or every fourth
+// (2), as sums or as means of neighbours (FILTERED 1). Out: radiance in cd/m^2.
 //
-// From the cache, an invocation takes 2x2 pixels: irradiance changes little between them, so that it is
-// looked up once and again only for pixels that lie on another surface.
+// From the cache, an invocation takes 2x2 pixels: irradiance changes little between them, so that
+// it is looked up once and again only for pixels that lie on another surface.
 #define CELLS_ACCESS readonly
 #include "lib/gathered.glsl"
 #include "lib/gbuffer.glsl"
@@ -58,8 +58,8 @@ vec4 found_at(uvec2 place)
 }
 
 #if GATHER_STEP == 2
-// Joint bilateral upsampling (Kopf et al. 2007): the four gathered pixels around, by distance, and by
-// how much of the same surface they lie on.
+// Joint bilateral upsampling (Kopf et al. 2007): the four gathered pixels around, by distance, and
+// by how much of the same surface they lie on.
 vec4 upsampled_light(surface s, uvec2 pixel)
 {
     vec2 at = vec2(pixel) * 0.5;

@@ -1,7 +1,7 @@
-// Adds what glossy surfaces mirror, by cones or (RAYS 1) as rays have found it, in the tiles that hold
-// any (one group each). In: tiles, G-buffer, radiance texture. Out: radiance in cd/m^2.
+// Adds what glossy surfaces mirror, by cones or (RAYS 1) as rays have found it, in the tiles that
+// hold any (one group each). In: tiles, G-buffer, radiance texture. Out: radiance in cd/m^2.
 #define CONE_SMOOTH 1
-#define CONE_SKIP 1
+#define CONE_SKIP   1
 #include "lib/gbuffer.glsl"
 #include "lib/environment.glsl"
 #include "lib/gathered.glsl"
@@ -38,8 +38,8 @@ vec3 mirrored_light(surface s, uvec2 pixel)
 }
 #endif
 
-// An invocation takes 2x2 pixels; with SHARED 1 those of about the same normal and roughness take what
-// the first of them has traced.
+// An invocation takes 2x2 pixels; with SHARED 1 those of about the same normal and roughness take
+// what the first of them has traced.
 void main()
 {
     uint tile = tiles[gl_WorkGroupID.x];
@@ -66,6 +66,7 @@ void main()
         vec3 f0 = mix(s.f0, s.base_color, s.metallic);
         float f90 = mix(s.f90, 1.0, s.metallic);
         vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
-        radiance[pixel_index(pixel)].rgb += reflected * light * (SPECULAR_OCCLUSION * voxels.indirect_intensity);
+        radiance[pixel_index(pixel)].rgb +=
+            reflected * light * (SPECULAR_OCCLUSION * voxels.indirect_intensity);
     }
 }

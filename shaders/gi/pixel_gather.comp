@@ -1,6 +1,6 @@
-// Gathers irradiance at pixels, at every one (GATHER_STEP 1) or at every fourth (2), by cones that are
-// turned from pixel to pixel and from frame to frame. In: G-buffer, radiance texture. Out: sums over
-// the frames in which nothing moved.
+// Gathers irradiance at pixels, at every one (GATHER_STEP 1) or at every fourth (2), by cones that
+// are turned from pixel to pixel and from frame to frame. In: G-buffer, radiance texture. Out: sums
+// over the frames in which nothing moved.
 #define CONE_SMOOTH 1
 #define PIXEL_CONES 1
 #include "lib/gathered.glsl"
@@ -19,14 +19,15 @@ void main()
     bool first = voxels.sample_count <= 1.0;
     if (s.shading >= SHADE_UNLIT)
         return;
-    // Four turns in a square of 2x2 pixels that change places from frame to frame: after four frames
-    // every pixel has seen the same, and then the next four follow.
+    // Four turns in a square of 2x2 pixels that change places from frame to frame: after four
+    // frames every pixel has seen the same, and then the next four follow.
     uint order = (place.x & 1u) + 2u * (place.y & 1u);
     float frame_number = voxels.sample_count - 1.0;
-    float turn = 2.0 * PI * fract((float(order) + frame_number) * 0.25 +
-                                  floor(frame_number * 0.25) * 0.61803399);
-    gather_cones g = begin_gather(voxel_position(s.position), s.normal, s.thin,
-                                  vec2(cos(turn), sin(turn)));
+    float turn =
+        2.0 * PI *
+        fract((float(order) + frame_number) * 0.25 + floor(frame_number * 0.25) * 0.61803399);
+    gather_cones g =
+        begin_gather(voxel_position(s.position), s.normal, s.thin, vec2(cos(turn), sin(turn)));
     gathered found = no_light();
     for (uint i = 0u; i < uint(CONE_MARCH.cone_count); i++) {
         uint hit;

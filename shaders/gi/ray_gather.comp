@@ -1,6 +1,6 @@
-// Gathers irradiance at pixels (every GATHER_STEP-th) by a ray a picture against the real geometry. In:
-// G-buffer, tree of triangles, materials, lights, shadow maps, irradiance. Out: sums over the frames in
-// which nothing moved.
+// Gathers irradiance at pixels (every GATHER_STEP-th) by a ray a picture against the real geometry.
+// In: G-buffer, tree of triangles, materials, lights, shadow maps, irradiance. Out: sums over the
+// frames in which nothing moved.
 #include "lib/gathered.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/hit_light.glsl"
@@ -30,7 +30,8 @@ void main()
     if (dot(direction, s.geometric_normal) > 0.0) {
         ray_light found = light_along(tree_origin(s.position, s.geometric_normal), direction, u.z,
                                       vec2(0.0, RAY_SPREAD), RAY_ROUGHNESS, vec2(place));
-        light = vec4(found.radiance / voxels.radiance_scale, min(found.distance_m / voxels.ao_radius_m, 1.0));
+        light = vec4(found.radiance / voxels.radiance_scale,
+                     min(found.distance_m / voxels.ao_radius_m, 1.0));
     }
     uint at = gathered_at(GATHERED_LIGHT, place);
     gathered_light[at] = (picture == 0u ? vec4(0.0) : gathered_light[at]) + light;

@@ -1,7 +1,7 @@
 // Gathers what glossy surfaces mirror at pixels (every GATHER_STEP-th) by rays against the real
-// geometry, which is shaded where they meet it: LIT_HITS 1 by each lamp, 0 as the voxels are lit. In
-// the tiles that hold any gloss, one group each. In: tiles, G-buffer, tree of triangles, materials,
-// lights, shadow maps, irradiance. Out: sums over the frames in which nothing moved.
+// geometry, which is shaded where they meet it: LIT_HITS 1 by each lamp, 0 as the voxels are lit.
+// In the tiles that hold any gloss, one group each. In: tiles, G-buffer, tree of triangles,
+// materials, lights, shadow maps, irradiance. Out: sums over the frames in which nothing moved.
 #include "lib/gbuffer.glsl"
 #include "lib/gathered.glsl"
 #include "lib/gloss_rule.glsl"
@@ -19,8 +19,8 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
     uint tiles[];
 };
 
-// A microfacet normal that the viewer sees, about +Z, of a surface of GGX roughness alpha (Heitz 2018,
-// "Sampling the GGX Distribution of Visible Normals").
+// A microfacet normal that the viewer sees, about +Z, of a surface of GGX roughness alpha (Heitz
+// 2018, "Sampling the GGX Distribution of Visible Normals").
 vec3 sample_visible_normal(vec3 view, float alpha, vec2 u)
 {
     vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
@@ -33,8 +33,8 @@ vec3 sample_visible_normal(vec3 view, float alpha, vec2 u)
     return normalize(vec3(alpha * n.xy, max(n.z, 1e-6)));
 }
 
-// What of a ray's light is reflected: Fresnel's part times the Smith terms that are left when facets
-// are drawn from those that the viewer sees, G2 / G1.
+// What of a ray's light is reflected: Fresnel's part times the Smith terms that are left when
+// facets are drawn from those that the viewer sees, G2 / G1.
 float reflected_share(surface s, float v_h, float n_v, float n_l, float alpha)
 {
     vec3 fresnel = specular_fresnel(s, v_h);
@@ -70,8 +70,8 @@ void main()
     mat3 axes = frame_about(s.normal);
     vec3 view = s.view * axes;
     view = normalize(vec3(view.xy, max(view.z, 1e-3)));
-    vec2 spread = vec2(gathered_pixel_m(s),
-                       length(frame.ray_dx) * float(GATHER_STEP) + 0.25 * alpha);
+    vec2 spread =
+        vec2(gathered_pixel_m(s), length(frame.ray_dx) * float(GATHER_STEP) + 0.25 * alpha);
     vec3 u = ray_numbers(place, picture);
     vec3 facet = sample_visible_normal(view, alpha, u.xy);
     vec3 direction = axes * reflect(-view, facet);

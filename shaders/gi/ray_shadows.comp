@@ -1,6 +1,6 @@
-// Which share of the light of lamps that have a size arrives at pixels: by a ray a picture to a place on
-// each of them. Of every GATHER_STEP x GATHER_STEP pixels one has its turn. In: G-buffer, tree of
-// triangles, lights. Out: sums over the frames in which nothing moved.
+// Which share of the light of lamps that have a size arrives at pixels: by a ray a picture to a
+// place on each of them. Of every GATHER_STEP x GATHER_STEP pixels one has its turn. In: G-buffer,
+// tree of triangles, lights. Out: sums over the frames in which nothing moved.
 #include "lib/gbuffer.glsl"
 #include "lib/gathered.glsl"
 #include "lib/triangle_tree.glsl"
@@ -31,8 +31,8 @@ void add_light(inout light_sum sum, surface s, vec3 light, vec3 place, float cha
 }
 
 #if AREA_LIGHTS
-// A place on an emitter, so that each counts as what it sends to the surface: one of four, from each quarter
-// one (resampled importance sampling, Talbot et al. 2005).
+// A place on an emitter, so that each counts as what it sends to the surface: one of four, from
+// each quarter one (resampled importance sampling, Talbot et al. 2005).
 vec3 place_on(area_light_block light, surface s, vec3 u)
 {
     vec3 places[4];
@@ -44,8 +44,8 @@ vec3 place_on(area_light_block light, surface s, vec3 u)
                         mix(light.corners[3].xyz, light.corners[2].xyz, at.x), at.y);
         vec3 way = places[i] - s.position;
         float squared = max(dot(way, way), 1e-30);
-        weights[i] = max(dot(way, s.normal), 0.0) * abs(dot(way, light.normal)) /
-                     (squared * squared);
+        weights[i] =
+            max(dot(way, s.normal), 0.0) * abs(dot(way, light.normal)) / (squared * squared);
         sum += weights[i];
     }
     int chosen = 0;
@@ -69,8 +69,7 @@ vec3 share_of_lamps(surface s, vec3 u)
         vec3 unshadowed = punctual_unshadowed(s, light, l);
         float angle = 2.0 * PI * u.y;
         vec3 offset = frame_about(l) * vec3(cos(angle), sin(angle), 0.0);
-        add_light(sum, s, unshadowed,
-                  light.position + offset * (sqrt(u.x) * light.radius_m), u.z);
+        add_light(sum, s, unshadowed, light.position + offset * (sqrt(u.x) * light.radius_m), u.z);
         u = fract(u + NEXT_LAMP);
     }
 #endif
@@ -83,7 +82,8 @@ vec3 share_of_lamps(surface s, vec3 u)
         u = fract(u + NEXT_LAMP);
     }
 #endif
-    return mix(vec3(1.0), sum.seen / max(sum.whole, vec3(1e-30)), greaterThan(sum.whole, vec3(0.0)));
+    return mix(vec3(1.0), sum.seen / max(sum.whole, vec3(1e-30)),
+               greaterThan(sum.whole, vec3(0.0)));
 }
 
 void main()

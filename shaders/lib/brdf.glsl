@@ -45,9 +45,9 @@ vec3 diffuse_reflectance(surface s, float v_h)
     return s.base_color * ((1.0 - s.metallic) * kept);
 }
 
-// The same for light that comes alike from everywhere: the mean over the cosine-weighted hemisphere, in
-// which Schlick's (1 - v.h)^5 is far smaller than for what mirrors at grazing view. Polynomial fitted to
-// the integral, off by 1e-5 at most.
+// The same for light that comes alike from everywhere: the mean over the cosine-weighted
+// hemisphere, in which Schlick's (1 - v.h)^5 is far smaller than for what mirrors at grazing view.
+// Polynomial fitted to the integral, off by 1e-5 at most.
 float mean_diffuse_share(surface s, float n_v)
 {
     float rise = 0.02821 + n_v * (-0.07998 + n_v * (0.08657 + n_v * (-0.04368 + n_v * 0.00897)));
@@ -55,8 +55,8 @@ float mean_diffuse_share(surface s, float n_v)
     return 1.0 - max(reflected.r, max(reflected.g, reflected.b));
 }
 
-// Share of light from everywhere that the specular part reflects anywhere: scale of F0 and share of F90.
-// Fitted to the integral of single-scattering GGX over both hemispheres, off by 0.004 at most.
+// Share of light from everywhere that the specular part reflects anywhere: scale of F0 and share of
+// F90. Fitted to the integral of single-scattering GGX over both hemispheres, off by 0.004 at most.
 vec2 mean_specular_share(float roughness)
 {
     float r = clamp(roughness, 0.0, 1.0);

@@ -7,7 +7,8 @@
 // Heitz et al. 2015, "The SGGX Microflake Distribution".) Steps attenuate by exp(-depth), so their
 // length does not change what a wall lets through.
 //
-// CONE_SMOOTH 1 blends two levels, CONE_SKIP 1 leaps over empty space; who includes this first says.
+// CONE_SMOOTH 1 blends two levels, CONE_SKIP 1 leaps over empty space; who includes this first
+// says.
 #include "lib/voxel.glsl"
 
 layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
@@ -32,8 +33,8 @@ struct cone_light {
 
 const uint CONE_MAX_STEPS = 256u;
 const float CONE_OPAQUE = 0.004;
-// Filtering spreads surfaces outwards, so that bodies seem larger and openings smaller: each face is
-// read so many voxels nearer to its body. More than this would turn thin walls inside out.
+// Filtering spreads surfaces outwards, so that bodies seem larger and openings smaller: each face
+// is read so many voxels nearer to its body. More than this would turn thin walls inside out.
 const float FACE_INSET = 0.25;
 // Of steps, over the widest diameter: filtering spreads a voxel over two.
 const float WIDEST_STEP = 1.5;
@@ -43,9 +44,9 @@ vec3 voxel_position(vec3 world)
     return world - voxels.anchor;
 }
 
-// How far inside a level a place is, in its voxels; negative outside what filtering can reach. Where
-// addresses wrap, the outermost half voxel would be filtered with the other side, and faces are read
-// a little aside.
+// How far inside a level a place is, in its voxels; negative outside what filtering can reach.
+// Where addresses wrap, the outermost half voxel would be filtered with the other side, and faces
+// are read a little aside.
 float inside_level(uint level, vec3 position)
 {
     ivec3 origin = voxels.levels[level].origin;
@@ -58,13 +59,14 @@ float inside_level(uint level, vec3 position)
 float finest_voxel(vec3 position)
 {
     float edge = voxels.levels[0].voxel_edge_m;
-    for (uint level = 0u; level + 1u < voxels.cell_level_count && inside_level(level, position) < 0.0; level++)
+    for (uint level = 0u;
+         level + 1u < voxels.cell_level_count && inside_level(level, position) < 0.0; level++)
         edge = voxels.levels[level + 1u].voxel_edge_m;
     return edge;
 }
 
-// Where cones start, in voxels above their surface: `usual`, but above a thin one beyond all that filtering
-// shows of its back, which would hide from it what it faces.
+// Where cones start, in voxels above their surface: `usual`, but above a thin one beyond all that
+// filtering shows of its back, which would hide from it what it faces.
 float cone_start(float usual, bool thin, vec3 normal)
 {
     vec3 size = abs(normal);
@@ -119,7 +121,8 @@ vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_l
 #if CONE_SMOOTH
     vec4 fine = sample_level(level, position, direction) * voxels.levels[level].inverse_voxel_edge;
     uint coarser = min(level + 1u, last);
-    vec4 coarse = sample_level(coarser, position, direction) * voxels.levels[coarser].inverse_voxel_edge;
+    vec4 coarse =
+        sample_level(coarser, position, direction) * voxels.levels[coarser].inverse_voxel_edge;
     return mix(fine, coarse, level == last ? 0.0 : blend);
 #else
     if (blend > 0.5 && level < last)
@@ -136,8 +139,9 @@ float empty_distance(uint level, vec3 position, vec3 direction)
     uint coarse = min(level + 2u, voxels.level_count - 1u);
     if (coarse <= level || inside_level(coarse, position) < 0.0)
         return 0.0;
-    return sample_level(coarse, position, direction).a > 0.0 ? 0.0
-                                                             : 0.5 * voxels.levels[coarse].voxel_edge_m;
+    return sample_level(coarse, position, direction).a > 0.0
+               ? 0.0
+               : 0.5 * voxels.levels[coarse].voxel_edge_m;
 }
 #endif
 
@@ -166,8 +170,8 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
             break;
 #if CONE_SKIP
         if (value.a == 0.0)
-            length_m = max(length_m, empty_distance(level, c.origin + middle * c.direction,
-                                                    c.direction));
+            length_m =
+                max(length_m, empty_distance(level, c.origin + middle * c.direction, c.direction));
 #endif
         float absorbed = passed * (1.0 - exp(-value.a * length_m));
         result.light += value.rgb * (absorbed / max(value.a, 1e-12));
@@ -181,7 +185,9 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
         passed -= absorbed;
         t += length_m;
         // Where levels are coarser than the cone is wide, steps follow them.
-        voxel = max(voxel, diameter < voxels.levels[level].voxel_edge_m ? voxels.levels[level].voxel_edge_m : 0.0);
+        voxel = max(voxel, diameter < voxels.levels[level].voxel_edge_m
+                               ? voxels.levels[level].voxel_edge_m
+                               : 0.0);
     }
     result.transmittance = passed > CONE_OPAQUE ? passed : 0.0;
     return result;

@@ -37,8 +37,10 @@ vec3 environment_diffuse(vec3 normal)
     vec3 sum = environment.irradiance_sh[0].rgb;
     sum += environment.irradiance_sh[1].rgb * n.y + environment.irradiance_sh[2].rgb * n.z +
            environment.irradiance_sh[3].rgb * n.x;
-    sum += environment.irradiance_sh[4].rgb * (n.x * n.y) + environment.irradiance_sh[5].rgb * (n.y * n.z) +
-           environment.irradiance_sh[6].rgb * (3.0 * n.z * n.z - 1.0) + environment.irradiance_sh[7].rgb * (n.x * n.z) +
+    sum += environment.irradiance_sh[4].rgb * (n.x * n.y) +
+           environment.irradiance_sh[5].rgb * (n.y * n.z) +
+           environment.irradiance_sh[6].rgb * (3.0 * n.z * n.z - 1.0) +
+           environment.irradiance_sh[7].rgb * (n.x * n.z) +
            environment.irradiance_sh[8].rgb * (n.x * n.x - n.y * n.y);
     return max(sum, 0.0) * frame.environment_intensity;
 }
@@ -63,8 +65,9 @@ vec3 environment_specular(vec3 direction, float roughness)
     float level = roughness * (environment.level_count - 1.0);
     float lower = floor(level);
     vec3 a = textureLod(environment_levels, vec3(p, lower), 0.0).rgb;
-    vec3 b = textureLod(environment_levels, vec3(p, min(lower + 1.0, environment.level_count - 1.0)),
-                        0.0).rgb;
+    vec3 b = textureLod(environment_levels,
+                        vec3(p, min(lower + 1.0, environment.level_count - 1.0)), 0.0)
+                 .rgb;
     return mix(a, b, level - lower) * frame.environment_intensity;
 }
 

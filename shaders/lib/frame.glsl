@@ -13,8 +13,7 @@ const float PI = 3.14159265358979;
 // Through the pixel's centre; its part along the camera's forward direction is 1.
 vec3 ray_direction(vec2 pixel)
 {
-    return frame.ray_corner + (pixel.x + 0.5) * frame.ray_dx +
-           (pixel.y + 0.5) * frame.ray_dy;
+    return frame.ray_corner + (pixel.x + 0.5) * frame.ray_dx + (pixel.y + 0.5) * frame.ray_dy;
 }
 
 // Reversed, infinite Z: depth = near / distance along the forward direction.
@@ -28,8 +27,8 @@ float luminance(vec3 color)
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// The unit vector of any v, however long or short: squares of its parts may leave the range of floats.
-// `fallback` for one without a direction: 0, or not finite.
+// The unit vector of any v, however long or short: squares of its parts may leave the range of
+// floats. `fallback` for one without a direction: 0, or not finite.
 vec3 safe_normalize(vec3 v, vec3 fallback)
 {
     vec3 size = abs(v);

@@ -5,10 +5,10 @@
 // Which of the two sets of cones: the cache's, or that of pixels.
 #if PIXEL_CONES
 #define CONE_MARCH voxels.pixel_march
-#define CONES voxels.pixel_cones
+#define CONES      voxels.pixel_cones
 #else
 #define CONE_MARCH voxels.cache_march
-#define CONES voxels.cache_cones
+#define CONES      voxels.cache_cones
 #endif
 
 // Roughness whose lobe is about as wide as a cone, for the environment's filtered levels.
@@ -51,13 +51,14 @@ gather_cones begin_gather(vec3 position, vec3 normal, bool thin, vec2 turn)
 #if ENVIRONMENT_LIGHT
 vec3 escaped_light(vec3 direction, float transmittance)
 {
-    return environment_specular(direction, GATHER_ROUGHNESS) * (transmittance / voxels.radiance_scale);
+    return environment_specular(direction, GATHER_ROUGHNESS) *
+           (transmittance / voxels.radiance_scale);
 }
 #endif
 
-// Filtering reaches through a wall one voxel thick: where most of it is met, its far side is mixed in,
-// which slanted walls show to the ray too. So light is read where the wall begins: as far in front
-// of the hit as there is still some of it.
+// Filtering reaches through a wall one voxel thick: where most of it is met, its far side is mixed
+// in, which slanted walls show to the ray too. So light is read where the wall begins: as far in
+// front of the hit as there is still some of it.
 const float FRONT_DIAMETERS[2] = float[](0.75, 0.4);
 const float FRONT_DENSITY = 0.05;
 
@@ -66,17 +67,17 @@ float front_of_hit(cone c, cone_light found)
     for (int i = 0; i < 2; i++) {
         float at_m = max(found.hit_m - FRONT_DIAMETERS[i] * found.hit_diameter_m, 0.0);
         uint level;
-        vec4 value = sample_voxels(c.origin + at_m * c.direction, c.direction, found.hit_diameter_m,
-                                   level);
+        vec4 value =
+            sample_voxels(c.origin + at_m * c.direction, c.direction, found.hit_diameter_m, level);
         if (value.a > FRONT_DENSITY * found.hit_density)
             return at_m;
     }
     return found.hit_m;
 }
 
-// Traces cone `i` and adds its share; `out_hit` remembers what counts most in it: distance in voxels
-// of the finest level (half), transmittance (8 bits), log2 of the diameter in those voxels (8 bits,
-// in sixteenths).
+// Traces cone `i` and adds its share; `out_hit` remembers what counts most in it: distance in
+// voxels of the finest level (half), transmittance (8 bits), log2 of the diameter in those voxels
+// (8 bits, in sixteenths).
 void add_cone(gather_cones g, uint i, inout gathered sum, out uint out_hit)
 {
     voxel_cone local = CONES[i];

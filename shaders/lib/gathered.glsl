@@ -1,5 +1,5 @@
-// What rays from pixels have found, several pictures of one size. GATHER_STEP: every how many-th pixel
-// has rays.
+// What rays from pixels have found, several pictures of one size. GATHER_STEP: every how many-th
+// pixel has rays.
 #include "lib/surface.glsl"
 #include "shared/ray_accumulation.h"
 
@@ -27,17 +27,20 @@ uint gathered_at(uint picture, uvec2 place)
 }
 
 #if RAY_SHADOWS
-// Behind the pictures: of each pixel, sums of the shares of lamps' light that arrive, and their number.
+// Behind the pictures: of each pixel, sums of the shares of lamps' light that arrive, and their
+// number.
 uint shares_at(uvec2 pixel)
 {
-    return gathered_at(uint(GATHERED_BEFORE_SHARES), uvec2(0)) + pixel.y * frame.render_size.x + pixel.x;
+    return gathered_at(uint(GATHERED_BEFORE_SHARES), uvec2(0)) + pixel.y * frame.render_size.x +
+           pixel.x;
 }
 #endif
 
 // Neighbours off a surface's plane by a pixel's width at its distance hardly count.
 const float PLANE_PIXELS = 1.0;
 
-// How much a neighbour is of the same surface; `pixel_m`: distance in m between the pixels compared.
+// How much a neighbour is of the same surface; `pixel_m`: distance in m between the pixels
+// compared.
 float likeness(surface s, surface n, float pixel_m)
 {
     float off = dot(n.position - s.position, s.geometric_normal) / (PLANE_PIXELS * pixel_m);
@@ -48,8 +51,8 @@ float likeness(surface s, surface n, float pixel_m)
     return n.shading < SHADE_UNLIT ? exp(-off * off) * cosine8 : 0.0;
 }
 
-// Of a window of 5x5 whose rim counts half, which holds each place of an interleaved square of 4x4 once,
-// so that on a plane the noise of single pixels cancels.
+// Of a window of 5x5 whose rim counts half, which holds each place of an interleaved square of 4x4
+// once, so that on a plane the noise of single pixels cancels.
 float window_weight(int x, int y)
 {
     return (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0);

@@ -28,10 +28,10 @@ layout(std430, binding = BIND_INDICES) readonly buffer index_storage
 
 struct triangle {
     uint instance;
-    uvec3 words;   // where each vertex starts in `vertices`
-    mat3 linear;   // of world_from_local
-    vec3 corner;   // first corner minus where rays come from
-    vec3 edges[2]; // from the first corner
+    uvec3 words;     // where each vertex starts in `vertices`
+    mat3 linear;     // of world_from_local
+    vec3 corner;     // first corner minus where rays come from
+    vec3 edges[2];   // from the first corner
     vec3 volumes[3]; // dotted with a ray: the determinant, and those of the second and third weight
 };
 
@@ -80,7 +80,8 @@ triangle fetch_triangle(uint id, vec3 eye)
 {
     triangle t;
     t.instance = id_block_instances[(id - 1u) >> ID_BLOCK_BITS];
-    uint first = instances[t.instance].first_index + 3u * (id - 1u - instances[t.instance].first_visibility_id);
+    uint first = instances[t.instance].first_index +
+                 3u * (id - 1u - instances[t.instance].first_visibility_id);
     t.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
     mat4 world_from_local = instances[t.instance].world_from_local;
     t.linear = mat3(world_from_local);
@@ -141,9 +142,8 @@ vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
     tangent *= inversesqrt(squared);
     float mirrored = (instances[t.instance].flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     vec3 bitangent = cross(normal, tangent) * (reversed ? -mirrored : mirrored);
-    return safe_normalize(tangent * tangent_space.x + bitangent * tangent_space.y +
-                              normal * tangent_space.z,
-                          normal);
+    return safe_normalize(
+        tangent * tangent_space.x + bitangent * tangent_space.y + normal * tangent_space.z, normal);
 }
 #endif
 
@@ -162,7 +162,8 @@ surface load_surface(uint id, sight ray, out layer through)
     float mirrored = (instances[t.instance].flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     s.geometric_normal = safe_normalize(face * mirrored, s.view);
     vec3 local_normal = interpolate_direction(t, VERTEX_NORMAL, weights);
-    // The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales too.
+    // The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales
+    // too.
     vec3 turned = cross(t.linear[1], t.linear[2]) * local_normal.x +
                   cross(t.linear[2], t.linear[0]) * local_normal.y +
                   cross(t.linear[0], t.linear[1]) * local_normal.z;
@@ -185,16 +186,19 @@ surface load_surface(uint id, sight ray, out layer through)
         vec3 weights_dx = plane_weights(t, direction + ray.dx);
         vec3 weights_dy = plane_weights(t, direction + ray.dy);
 #if SECOND_UV_SET
-        vec4 uv[3] = {fetch4(t.words.x + VERTEX_UV), fetch4(t.words.y + VERTEX_UV), fetch4(t.words.z + VERTEX_UV)};
+        vec4 uv[3] = {fetch4(t.words.x + VERTEX_UV), fetch4(t.words.y + VERTEX_UV),
+                      fetch4(t.words.z + VERTEX_UV)};
 #else
-        vec2 uv[3] = {fetch2(t.words.x + VERTEX_UV), fetch2(t.words.y + VERTEX_UV), fetch2(t.words.z + VERTEX_UV)};
+        vec2 uv[3] = {fetch2(t.words.x + VERTEX_UV), fetch2(t.words.y + VERTEX_UV),
+                      fetch2(t.words.z + VERTEX_UV)};
 #endif
         point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
         point.dx = uv[0] * weights_dx.x + uv[1] * weights_dx.y + uv[2] * weights_dx.z - point.uv;
         point.dy = uv[0] * weights_dy.x + uv[1] * weights_dy.y + uv[2] * weights_dy.z - point.uv;
         // Loops over the slots in use, so that the sampler code is compiled once per space.
 #if COLOR_CLASSES > 0
-        for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
+        for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u;
+             slots &= slots - 1u) {
             uint slot = uint(findLSB(slots));
             vec4 texel = sample_color(material.first_texture + slot, point);
             base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
@@ -210,12 +214,13 @@ surface load_surface(uint id, sight ray, out layer through)
             vec4 texel = sample_data(material.first_texture + slot, point);
             roughness *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.g : 1.0;
             metallic *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.b : 1.0;
-            occlusion += slot == TEXTURE_OCCLUSION ? material.occlusion_strength * (texel.r - 1.0) : 0.0;
+            occlusion +=
+                slot == TEXTURE_OCCLUSION ? material.occlusion_strength * (texel.r - 1.0) : 0.0;
             transmission *= slot == TEXTURE_TRANSMISSION ? texel.r : 1.0;
             weight *= slot == TEXTURE_SPECULAR ? texel.a : 1.0;
             if (slot == TEXTURE_NORMAL)
-                tangent_space = vec3((texel.xy * 2.0 - 1.0) * material.normal_scale,
-                                     texel.z * 2.0 - 1.0);
+                tangent_space =
+                    vec3((texel.xy * 2.0 - 1.0) * material.normal_scale, texel.z * 2.0 - 1.0);
         }
         if ((material.texture_mask & (1u << TEXTURE_NORMAL)) != 0u)
             s.normal = mapped_normal(t, tangent_space, weights, s.normal);

@@ -16,12 +16,15 @@ vec3 trace_gloss(vec3 position_world, vec3 normal, bool thin, vec3 direction, fl
     vec3 origin = voxel_position(position_world);
     float voxel = finest_voxel(origin);
     cone c;
-    c.origin = origin + normal * (cone_start(voxels.pixel_march.start_voxels, thin, normal) * voxel);
+    c.origin =
+        origin + normal * (cone_start(voxels.pixel_march.start_voxels, thin, normal) * voxel);
     c.direction = direction;
     c.tangent = lobe_tangent(roughness);
     c.step = min(voxels.pixel_march.step_diameters, 1.0);
-    // As wide as a voxel of the coarsest level or mip, but no wider than four of the coarsest level.
-    c.widest = min(4.0 * voxels.cone_max_diameter_m, voxels.levels[voxels.level_count - 1u].voxel_edge_m);
+    // As wide as a voxel of the coarsest level or mip, but no wider than four of the coarsest
+    // level.
+    c.widest =
+        min(4.0 * voxels.cone_max_diameter_m, voxels.levels[voxels.level_count - 1u].voxel_edge_m);
     c.reach_m = 1e30;
     cone_light found = trace_cone(c, 1.0);
     vec3 light = found.light * voxels.radiance_scale;

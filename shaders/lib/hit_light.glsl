@@ -1,6 +1,6 @@
-// What a ray against the real geometry sees: surfaces, shaded where it meets them, or the environment.
-// LIT_HITS 1: surfaces are lit by each lamp; 0: as the voxels around them are.
-#define CONE_SMOOTH 0
+// What a ray against the real geometry sees: surfaces, shaded where it meets them, or the
+// environment. LIT_HITS 1: surfaces are lit by each lamp; 0: as the voxels around them are.
+#define CONE_SMOOTH  0
 #define CELLS_ACCESS readonly
 #include "lib/geometry.glsl"
 #include "lib/lighting.glsl"
@@ -29,7 +29,8 @@ vec3 voxel_light_at(vec3 world, vec3 direction)
     return value.a > 1e-6 ? value.rgb / value.a : vec3(0.0);
 }
 
-// Share of irradiance / pi that a surface reflects towards the viewer, by its matte and glossy parts.
+// Share of irradiance / pi that a surface reflects towards the viewer, by its matte and glossy
+// parts.
 vec3 whole_reflectance(surface s)
 {
     float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
@@ -39,8 +40,8 @@ vec3 whole_reflectance(surface s)
            mix(s.f90, 1.0, s.metallic) * scale_bias.y;
 }
 
-// What a surface sends back along the ray that met it. `spread` is the distance in m between rays of
-// neighbouring pixels there, over that to the hit.
+// What a surface sends back along the ray that met it. `spread` is the distance in m between rays
+// of neighbouring pixels there, over that to the hit.
 vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float spread,
                   float least_roughness, vec2 pixel)
 {
@@ -48,10 +49,11 @@ vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float s
     uint id = tree_triangle_texel(at).w;
     mat3 axes = frame_about(direction);
     layer through;
-    surface s = load_surface(id, sight(origin + frame.bvh_origin, direction, axes[0] * spread,
-                                       axes[1] * spread, pixel), through);
-    // Highlights of smooth surfaces are met too seldom by rays that spread: their lobes are widened to
-    // the ray's own (Kaplanyan and Dachsbacher 2013, "Path Space Regularization").
+    surface s = load_surface(
+        id, sight(origin + frame.bvh_origin, direction, axes[0] * spread, axes[1] * spread, pixel),
+        through);
+    // Highlights of smooth surfaces are met too seldom by rays that spread: their lobes are widened
+    // to the ray's own (Kaplanyan and Dachsbacher 2013, "Path Space Regularization").
     s.roughness = max(s.roughness, least_roughness);
     vec3 sum = (flags & TREE_LIT_DIRECTLY) != 0u ? vec3(0.0) : s.emission;
     if (s.shading >= SHADE_UNLIT) // a drawing, not a source of light
@@ -66,9 +68,9 @@ vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float s
     return sum;
 }
 
-// `origin` is relative to frame.bvh_origin, `direction` unit, `chance` uniform in [0, 1). `spread`: distance
-// in m between rays of neighbouring pixels where they start, and how much that grows per m. `roughness`
-// is of the lobe that the ray is from.
+// `origin` is relative to frame.bvh_origin, `direction` unit, `chance` uniform in [0, 1). `spread`:
+// distance in m between rays of neighbouring pixels where they start, and how much that grows per
+// m. `roughness` is of the lobe that the ray is from.
 ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, float roughness,
                       vec2 pixel)
 {
@@ -84,9 +86,9 @@ ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, fl
         if ((edge_c.w & TREE_ONE_SIDED) != 0u && dot(face, direction) > 0.0)
             return found;
 #if LIT_HITS
-        found.radiance = hit_radiance(hit, edge_c.w, origin, direction,
-                                      spread.x / max(hit.distance, 1e-6) + spread.y,
-                                      roughness, pixel);
+        found.radiance =
+            hit_radiance(hit, edge_c.w, origin, direction,
+                         spread.x / max(hit.distance, 1e-6) + spread.y, roughness, pixel);
 #else
         vec3 world = origin + frame.bvh_origin + hit.distance * direction;
         found.radiance = voxel_light_at(world, direction) * voxels.radiance_scale;

@@ -1,8 +1,8 @@
 // Looks up the irradiance cache between voxel faces.
 #include "lib/voxel_cells.glsl"
 
-// The finest level that holds a place with all its neighbours; `out_room` is how many voxels it lies
-// inside. The number of levels if there is none.
+// The finest level that holds a place with all its neighbours; `out_room` is how many voxels it
+// lies inside. The number of levels if there is none.
 uint cache_level(vec3 position, out float out_room)
 {
     uint level = 0u;
@@ -23,8 +23,8 @@ uint cache_level(vec3 position, out float out_room)
 // where the dominant one changes.
 const float LEAST_SHARE = 0.1;
 
-// Adds irradiance / pi / scale and openness, trilinear between the faces of the eight voxels around a
-// place that look the way of `normal`. `position` is relative to the anchor.
+// Adds irradiance / pi / scale and openness, trilinear between the faces of the eight voxels around
+// a place that look the way of `normal`. `position` is relative to the anchor.
 void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout float weight)
 {
     vec3 at = position * voxels.levels[level].inverse_voxel_edge - 0.5;
@@ -43,7 +43,8 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
     for (int i = 0; i < 8; i++) {
         ivec3 step = ivec3(i & 1, (i >> 1) & 1, i >> 2);
         uvec3 slot = uvec3((low + step) & edge_mask);
-        uint cell = voxel_index[first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift)))];
+        uint cell =
+            voxel_index[first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift)))];
         if (cell == 0u)
             continue;
         cell = (cell - 1u) * CELL_WORDS + CELL_FACES;

@@ -31,12 +31,13 @@ layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 #endif
 
 #if RAY_SHADOWS
-// Share of the light of lamps that have a size that arrives, by rays; whoever asks for direct light says.
+// Share of the light of lamps that have a size that arrives, by rays; whoever asks for direct light
+// says.
 vec3 seen_share = vec3(1.0);
 #elif CONE_SHADOWS
-// Share of a light of a size that reaches a point, by a cone towards it; `hard` is what a shadow map
-// says of its middle. Voxels know nothing of what is nearer than they are large, but where penumbrae
-// are narrower than a voxel the map is right anyway.
+// Share of a light of a size that reaches a point, by a cone towards it; `hard` is what a shadow
+// map says of its middle. Voxels know nothing of what is nearer than they are large, but where
+// penumbrae are narrower than a voxel the map is right anyway.
 float soft_visibility(float hard, surface s, vec3 to_light, float distance_m, float radius_m)
 {
     vec3 normal = s.geometric_normal;
@@ -71,7 +72,8 @@ float distance_attenuation(float squared, float range_m)
     return attenuation;
 }
 
-// What a lamp would send by the surface to the viewer if nothing stood between; `l` is the way to it.
+// What a lamp would send by the surface to the viewer if nothing stood between; `l` is the way to
+// it.
 vec3 punctual_unshadowed(surface s, light_block light, out vec3 l)
 {
     l = -light.direction;
@@ -124,8 +126,8 @@ vec3 punctual_light(surface s, light_block light)
 #if AREA_LIGHTS
 // Integral of one edge of a polygon seen from the origin (Lambert 1760; Baum et al. 1989): the
 // angle it spans times the unit normal of its plane, component along n. a and b are unit vectors.
-// angle / sin(angle) by the rational fit of Hill and Heitz 2016, "Real-Time Area Lighting: a Journey
-// from Research to Production".
+// angle / sin(angle) by the rational fit of Hill and Heitz 2016, "Real-Time Area Lighting: a
+// Journey from Research to Production".
 float edge_integral(vec3 a, vec3 b, vec3 n)
 {
     float x = dot(a, b);
@@ -240,8 +242,8 @@ vec3 area_light(surface s, area_light_block light)
         return reflected * seen_share;
 #endif
     vec3 to_light = safe_normalize(light.center - s.position, s.normal);
-    float lit = shadow_visibility(light.shadow, light.center, s.position, s.geometric_normal,
-                                  to_light);
+    float lit =
+        shadow_visibility(light.shadow, light.center, s.position, s.geometric_normal, to_light);
 #if CONE_SHADOWS
     // As a disk of the emitter's area, seen at its slant.
     float cosine = abs(dot(light.normal, to_light));

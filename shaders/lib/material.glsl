@@ -183,8 +183,8 @@ vec4 sample_color(uint texture_number, texture_point point)
     footprint f = find_footprint(texture_number, point);
     vec4 sum = vec4(0.0);
     for (float i = 0.5; i < f.samples; i += 1.0)
-        sum += sample_color_class(f.class_number,
-                                  f.at + vec3(f.axis * (i / f.samples - 0.5), 0.0), f.lod);
+        sum += sample_color_class(f.class_number, f.at + vec3(f.axis * (i / f.samples - 0.5), 0.0),
+                                  f.lod);
     return sum / f.samples;
 }
 #endif
@@ -195,8 +195,8 @@ vec4 sample_data(uint texture_number, texture_point point)
     footprint f = find_footprint(texture_number, point);
     vec4 sum = vec4(0.0);
     for (float i = 0.5; i < f.samples; i += 1.0)
-        sum += sample_data_class(f.class_number,
-                                 f.at + vec3(f.axis * (i / f.samples - 0.5), 0.0), f.lod);
+        sum += sample_data_class(f.class_number, f.at + vec3(f.axis * (i / f.samples - 0.5), 0.0),
+                                 f.lod);
     return sum / f.samples;
 }
 #endif

@@ -1,5 +1,6 @@
-// Random numbers for rays from pixels. Those of a square of 4x4 share one low-discrepancy sequence (Keller
-// and Heidrich 2001, "Interleaved Sampling"), so that averaging over a square averages all of it.
+// Random numbers for rays from pixels. Those of a square of 4x4 share one low-discrepancy sequence
+// (Keller and Heidrich 2001, "Interleaved Sampling"), so that averaging over a square averages all
+// of it.
 
 // Place of a pixel in the square's order: neighbours lie far apart in it (Bayer 1973).
 uint interleaved_order(uvec2 p)
@@ -9,8 +10,8 @@ uint interleaved_order(uvec2 p)
     return low * 4u + high;
 }
 
-// Squares are shifted against each other, so that what one misses another finds (Jarzynski and Olano
-// 2020, "Hash Functions for GPU Rendering": pcg3d).
+// Squares are shifted against each other, so that what one misses another finds (Jarzynski and
+// Olano 2020, "Hash Functions for GPU Rendering": pcg3d).
 uvec3 hash_square(uvec2 square)
 {
     uvec3 v = uvec3(square, 1u) * 1664525u + 1013904223u;
@@ -24,8 +25,9 @@ uvec3 hash_square(uvec2 square)
     return v;
 }
 
-// A point of the additive recurrence on the generalised golden ratio (Roberts 2018, "The Unreasonable
-// Effectiveness of Quasirandom Sequences"), and a third number for what else is left to chance.
+// A point of the additive recurrence on the generalised golden ratio (Roberts 2018, "The
+// Unreasonable Effectiveness of Quasirandom Sequences"), and a third number for what else is left
+// to chance.
 vec3 sequence_point(uint i, uvec2 square)
 {
     uvec3 bits = uvec3(0xc13fa9a9u, 0x91e10da5u, 0x9e3779b9u) * (i + 1u) + hash_square(square);

@@ -3,8 +3,8 @@
 #include "lib/gathered.glsl"
 
 #if RAY_SHADOWS
-// Neighbours beyond the edge of a shadow differ by more than twice what so few rays have by chance, whose
-// variance is at most 1/4 over their number.
+// Neighbours beyond the edge of a shadow differ by more than twice what so few rays have by chance,
+// whose variance is at most 1/4 over their number.
 float same_shadow(vec4 a, vec4 b)
 {
     vec3 difference = abs(a.rgb / a.a - b.rgb / b.a);
@@ -12,8 +12,8 @@ float same_shadow(vec4 a, vec4 b)
     return exp(-most * most / (1.0 / a.a + 1.0 / b.a));
 }
 
-// Share of the light of lamps that have a size that arrives at a pixel. Sums are of rays: a mean of each
-// neighbour counts as much as its rays are many.
+// Share of the light of lamps that have a size that arrives at a pixel. Sums are of rays: a mean of
+// each neighbour counts as much as its rays are many.
 vec3 seen_share_of(surface s, uvec2 pixel)
 {
     vec4 own = gathered_light[shares_at(pixel)];

@@ -50,8 +50,8 @@ bool is_inside(vec2 uv)
 }
 
 #if FLAT_SHADOWS
-// A place in a shadow view: uv, layer, reversed depth; how lifting it off its surface moves it there;
-// and whether the view sees it.
+// A place in a shadow view: uv, layer, reversed depth; how lifting it off its surface moves it
+// there; and whether the view sees it.
 struct shadow_place {
     vec4 at;
     vec3 lift;
@@ -78,8 +78,8 @@ shadow_place project_to_shadow(uint view_number, vec3 position, vec3 normal, vec
 }
 
 // Refines a place in the sun's map of the whole scene to the smallest of the view's cascades that
-// holds it, where texels are smaller and so is the lift. All share the sun's axes, so a cascade is a
-// scale and an offset. Returns its number, frame.cascade_count for none.
+// holds it, where texels are smaller and so is the lift. All share the sun's axes, so a cascade is
+// a scale and an offset. Returns its number, frame.cascade_count for none.
 uint refine_by_cascade(inout shadow_place place)
 {
     uint found = frame.cascade_count;

@@ -59,8 +59,8 @@ void cross_triangle(uint number, vec3 origin, vec3 direction, float chance, inou
     vec3 turned = cross(from, edge_b);
     float c = dot(direction, turned) * inverse;
     float t = dot(edge_c, turned) * inverse;
-    bool met = determinant != 0.0 && b >= 0.0 && c >= 0.0 && b + c <= 1.0 && t > 0.0 &&
-               t < hit.distance;
+    bool met =
+        determinant != 0.0 && b >= 0.0 && c >= 0.0 && b + c <= 1.0 && t > 0.0 && t < hit.distance;
 #if ALPHA_MASK
     met = met && uintBitsToFloat(second.w) > fract(chance + float(number & 1023u) * 0.61803399);
 #endif

@@ -38,7 +38,8 @@ bool voxel_in_level(uint level, ivec3 voxel)
 {
     ivec3 origin = voxels.levels[level].origin;
     ivec3 at = voxel - origin;
-    return all(greaterThanEqual(at, ivec3(0))) && all(lessThan(at, ivec3(voxels.levels[level].edge)));
+    return all(greaterThanEqual(at, ivec3(0))) &&
+           all(lessThan(at, ivec3(voxels.levels[level].edge)));
 }
 
 vec3 face_direction(uint face)

@@ -12,7 +12,8 @@ struct overlap_triangle {
     dvec3 high;
 };
 
-// Halves of a square that the projected triangle touches: bit x + 2 y. `low` is the square's corner.
+// Halves of a square that the projected triangle touches: bit x + 2 y. `low` is the square's
+// corner.
 uint touched_squares(dvec2 a, dvec2 b, dvec2 c, bool clockwise, dvec2 low)
 {
     dvec2 from[3] = {a, b, c};

@@ -13,8 +13,8 @@ face_sums no_face_sums()
     return sums;
 }
 
-// Adds a surface of radiance rgb and optical depth a: seen from a side it has the depth that it shows
-// there.
+// Adds a surface of radiance rgb and optical depth a: seen from a side it has the depth that it
+// shows there.
 void add_face(inout face_sums sums, vec3 normal, vec4 value)
 {
 #if VOXEL_DIRECTIONS == 1

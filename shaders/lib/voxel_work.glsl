@@ -52,8 +52,8 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
     for (uint i_ = 0u; i_ < REGION_RUN; i_++) {                                                    \
         uint level_;                                                                               \
         ivec3 voxel_;                                                                              \
-        if (region_voxel((run) * REGION_RUN + i_, level_, voxel_) &&                               \
-            voxel_index[voxels.levels[level_].first_index + voxel_slot(level_, voxel_)] != 0u)         \
+        if (region_voxel((run)*REGION_RUN + i_, level_, voxel_) &&                                 \
+            voxel_index[voxels.levels[level_].first_index + voxel_slot(level_, voxel_)] != 0u)     \
             out_bits |= 1u << i_;                                                                  \
     }
 

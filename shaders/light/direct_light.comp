@@ -1,6 +1,7 @@
-// Direct light of punctual lights and planar emitters. In: G-buffer, lights, shadow maps; RAY_SHADOWS: what
-// rays have found to arrive from lamps that have a size. Out: radiance in cd/m^2, added to what the
-// environment pass wrote (FIRST 0), to the emission (1), or by itself (2: the debug view of direct light).
+// Direct light of punctual lights and planar emitters. In: G-buffer, lights, shadow maps;
+// RAY_SHADOWS: what rays have found to arrive from lamps that have a size. Out: radiance in cd/m^2,
+// added to what the environment pass wrote (FIRST 0), to the emission (1), or by itself (2: the
+// debug view of direct light).
 #include "lib/gbuffer.glsl"
 #include "lib/lighting.glsl"
 #include "lib/radiance.glsl"

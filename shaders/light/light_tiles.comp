@@ -75,8 +75,8 @@ void main()
 #endif
     vec2 low = vec2(tile * LIGHT_TILE_EDGE) - 0.5;
     vec2 high = low + float(LIGHT_TILE_EDGE);
-    vec3 corners[4] = {ray_direction(low), ray_direction(vec2(high.x, low.y)),
-                       ray_direction(high), ray_direction(vec2(low.x, high.y))};
+    vec3 corners[4] = {ray_direction(low), ray_direction(vec2(high.x, low.y)), ray_direction(high),
+                       ray_direction(vec2(low.x, high.y))};
     vec3 planes[4];
     for (int i = 0; i < 4; i++) {
         planes[i] = normalize(cross(corners[i], corners[(i + 1) & 3]));
@@ -94,8 +94,8 @@ void main()
                 break;
             light_block light = lights[index];
             bool unlimited = light.type == LIGHT_DIRECTIONAL || light.range_m <= 0.0;
-            if (unlimited || sphere_in_tile(light.position - frame.eye, light.range_m,
-                                            planes, near_distance, far_distance))
+            if (unlimited || sphere_in_tile(light.position - frame.eye, light.range_m, planes,
+                                            near_distance, far_distance))
                 mask |= 1u << bit;
         }
         light_masks[tile_index * words + word] = mask;

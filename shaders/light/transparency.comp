@@ -1,5 +1,6 @@
-// Blended and transmissive layers over the opaque picture, per pixel in order of depth, in the tiles
-// that hold any (one group each). In: tiles, lists of fragments, geometry, materials, lights. Out: radiance in cd/m^2.
+// Blended and transmissive layers over the opaque picture, per pixel in order of depth, in the
+// tiles that hold any (one group each). In: tiles, lists of fragments, geometry, materials, lights.
+// Out: radiance in cd/m^2.
 //
 // A layer covers `alpha` of the pixel. Its diffuse part lets the share `transmission` through
 // unscattered, tinted by base colour (KHR_materials_transmission, thin-walled) and absorbed along
@@ -112,9 +113,9 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
 }
 
 #if REFRACTION
-// Light through the volume below a surface, by one cone along the refracted ray, as wide as roughness
-// makes it (KHR_materials_volume). Both faces of a slab bend the ray alike, so it is taken to leave
-// the volume as it came; where it cannot enter, it is reflected.
+// Light through the volume below a surface, by one cone along the refracted ray, as wide as
+// roughness makes it (KHR_materials_volume). Both faces of a slab bend the ray alike, so it is
+// taken to leave the volume as it came; where it cannot enter, it is reflected.
 vec3 refracted_light(surface s, layer through)
 {
     float ratio = 1.0 / max(through.ior, 1.0);

@@ -1,5 +1,5 @@
-// Lists the tiles of GROUP_EDGE^2 pixels that hold transparent fragments, for indirect dispatch. In:
-// heads of the pixels' lists. Out: dispatch arguments and tile numbers, in any order.
+// Lists the tiles of GROUP_EDGE^2 pixels that hold transparent fragments, for indirect dispatch.
+// In: heads of the pixels' lists. Out: dispatch arguments and tile numbers, in any order.
 #include "lib/frame.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
@@ -18,7 +18,7 @@ layout(std430, binding = BIND_TILES) buffer tile_storage
     uint tile_groups_y;
     uint tile_groups_z;
     uint tile_unused;
-    uint tiles[];         // row * 65536 + column
+    uint tiles[]; // row * 65536 + column
 };
 
 void main()

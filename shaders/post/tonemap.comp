@@ -1,6 +1,6 @@
 // Radiance to displayed pixels. In: radiance, exposure. Out, by OUTPUT:
-//   0: planar full-range YCbCr 4:2:0 (ITU-R BT.601 as JFIF has it); one invocation does 8 x 2 pixels
-//   1: RGBA8, 2: four floats, linear and unexposed; one invocation does 1 pixel
+//   0: planar full-range YCbCr 4:2:0 (ITU-R BT.601 as JFIF has it); one invocation does 8 x 2
+//   pixels 1: RGBA8, 2: four floats, linear and unexposed; one invocation does 1 pixel
 // Scales bilinearly where the rendered size is not the shown one. DISPLAY_READY: values are shown
 // as they are (debug views). BLANK: plain grey, for debug views that have nothing to show.
 #include "lib/display.glsl"
@@ -26,7 +26,8 @@ vec3 radiance_at(uvec2 shown)
     if (frame.render_size == frame.output_size)
         return radiance[shown.y * frame.render_size.x + shown.x].rgb;
     vec2 size = vec2(frame.render_size);
-    vec2 at = clamp((vec2(shown) + 0.5) * size / vec2(frame.output_size) - 0.5, vec2(0.0), size - 1.0);
+    vec2 at =
+        clamp((vec2(shown) + 0.5) * size / vec2(frame.output_size) - 0.5, vec2(0.0), size - 1.0);
     uvec2 low = uvec2(at);
     uvec2 high = min(low + 1u, frame.render_size - 1u);
     vec2 part = at - vec2(low);
@@ -43,7 +44,8 @@ vec3 displayed(uvec2 shown)
 #if DISPLAY_READY
     return clamp(color, 0.0, 1.0);
 #else
-    float scale = frame.exposure_scale > 0.0 ? frame.exposure_scale : automatic_exposure * frame.exposure_bias;
+    float scale = frame.exposure_scale > 0.0 ? frame.exposure_scale
+                                             : automatic_exposure * frame.exposure_bias;
     return transfer(tonemap(max(color, 0.0) * scale));
 #endif
 }

@@ -18,7 +18,7 @@ void test_alpha()
     float alpha = material.base_color.a * fragment_alpha;
 #if COLOR_CLASSES > 0
     texture_point point = texture_point(UV_VECTOR(fragment_uv), UV_VECTOR(dFdx(fragment_uv)),
-                                       UV_VECTOR(dFdy(fragment_uv)), 0.0);
+                                        UV_VECTOR(dFdy(fragment_uv)), 0.0);
     if ((material.texture_mask & (1u << TEXTURE_BASE_COLOR)) != 0u)
         alpha *= sample_color(material.first_texture + TEXTURE_BASE_COLOR, point).a;
 #endif
@@ -32,7 +32,8 @@ layout(early_fragment_tests) in;
 
 layout(std430, binding = BIND_FRAGMENTS) buffer fragment_storage
 {
-    // `fragment_words`: heads of the pixels' lists (0: empty), then fragments: next + 1, visibility id.
+    // `fragment_words`: heads of the pixels' lists (0: empty), then fragments: next + 1, visibility
+    // id.
     uint fragment_count;    // met by rasterisation
     uint fragment_capacity; // room for them
     uint fragment_unused[2];

@@ -1,6 +1,6 @@
-// Fills voxels of a level from the eight below them in the finer level, so that a wide cone reads one
-// coarse texel. In: list of voxels, radiance texture, cells. Out: radiance texture, cells of clip
-// levels.
+// Fills voxels of a level from the eight below them in the finer level, so that a wide cone reads
+// one coarse texel. In: list of voxels, radiance texture, cells. Out: radiance texture, cells of
+// clip levels.
 //
 // For each face the two voxels of a column are seen one behind the other, then the four columns are
 // averaged (anisotropic pre-integration, Crassin et al. 2011). What is kept is optical depth.
@@ -23,7 +23,9 @@ vec4 fetch_finer(ivec3 voxel, uint face)
 {
     ivec3 texels = voxels.levels[FINER].texel_origin;
     ivec3 address = slot_address(FINER, voxel_slot(FINER, voxel));
-    return texelFetch(voxel_radiance, texels + ivec3(voxels.levels[FINER].face_stride * int(face), 0, 0) + address, 0);
+    return texelFetch(voxel_radiance,
+                      texels + ivec3(voxels.levels[FINER].face_stride * int(face), 0, 0) + address,
+                      0);
 }
 
 // Radiance seen and share covered through one texel.

@@ -1,8 +1,8 @@
 // Lists what later passes work on. STAGE 0: mends the free lists' lengths and empties the lists.
 // STAGE 1: enters each cell into the list of those that are lit, or of those that take their light
 // from the finer level; enters the occupied voxels of the mip levels below. STAGE 2:
-// turns the lists' lengths into arguments of indirect dispatches. STAGE 3: likewise for the tiles of
-// large triangles.
+// turns the lists' lengths into arguments of indirect dispatches. STAGE 3: likewise for the tiles
+// of large triangles.
 #include "lib/voxel_work.glsl"
 #include "lib/voxel_cells.glsl"
 
@@ -60,7 +60,7 @@ uint list_of(uint word)
     if (word == VOXEL_NONE)
         return VOXEL_NONE;
     uint level = word >> CELL_LEVEL_BIT;
-        ivec3 inside = slot_voxel(level, word & CELL_SLOT_MASK) - voxels.levels[level].inner_origin;
+    ivec3 inside = slot_voxel(level, word & CELL_SLOT_MASK) - voxels.levels[level].inner_origin;
     bool filtered = all(greaterThanEqual(inside, ivec3(0))) &&
                     all(lessThan(inside, ivec3(voxels.levels[level].inner_edge)));
     return filtered ? level : LIST_LIT;

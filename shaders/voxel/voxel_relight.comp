@@ -1,5 +1,6 @@
-// Lights the occupied voxels of some levels. In: list of cells, surfels, materials, lights, shadow maps,
-// irradiance cache. FRESH 1: those that have not been lit yet. Out: radiance texture, and the face records but for their indirect light.
+// Lights the occupied voxels of some levels. In: list of cells, surfels, materials, lights, shadow
+// maps, irradiance cache. FRESH 1: those that have not been lit yet. Out: radiance texture, and the
+// face records but for their indirect light.
 //
 // A face's radiance is the mean of the surfels that face its way: emission, and reflectance times
 // direct and (FEEDBACK 1) indirect irradiance. Materials are looked up here, so that editing one
@@ -7,7 +8,7 @@
 #include "lib/voxel_faces.glsl"
 #include "lib/voxel_radiate.glsl"
 #define SHADOW_TAPS 2u
-#define VIEWLESS 1
+#define VIEWLESS    1
 #include "lib/lighting.glsl"
 #include "shared/material_block.h"
 
@@ -66,9 +67,9 @@ void add_surfel(inout side s, uint word, material_block m, bool directly, float 
     uint alpha = m.flags & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK);
     opacity = alpha != 0u ? clamp(opacity * m.base_color.a, 0.0, 1.0) : 1.0;
     float transmission = m.transmission * (1.0 - m.mean_metallic);
-    // Mean reflectance over the hemisphere: the dielectric layer's, then the diffuse base, of which the
-    // layer holds back what Schlick has of v.h (0.0037 of the rise, see mean_diffuse_share()), or the
-    // metal; metallic and roughness as they are on average.
+    // Mean reflectance over the hemisphere: the dielectric layer's, then the diffuse base, of which
+    // the layer holds back what Schlick has of v.h (0.0037 of the rise, see mean_diffuse_share()),
+    // or the metal; metallic and roughness as they are on average.
     bool plain = (m.flags & MATERIAL_IOR_ONE) != 0u;
     vec3 f0 = plain ? vec3(0.0) : min(m.f0 * m.specular_color, 1.0) * m.specular;
     float f90 = plain ? 0.0 : m.specular;
@@ -194,10 +195,9 @@ void main()
         // voxels then add up to a whole one.
         float opacity = min(sides[i].opacity * inverse, 1.0);
         // Halves that are touched overstate what hardly covers them, such as slivers.
-        float covered = min(coverage(sides[i].mask, i >> 1u),
-                            sides[i].weight / float(SURFEL_WEIGHT_SCALE));
-        float depth = covered *
-                      min(-log(max(1.0 - opacity, 1e-9)), float(VOXEL_MAX_DEPTH));
+        float covered =
+            min(coverage(sides[i].mask, i >> 1u), sides[i].weight / float(SURFEL_WEIGHT_SCALE));
+        float depth = covered * min(-log(max(1.0 - opacity, 1e-9)), float(VOXEL_MAX_DEPTH));
         direct = cut_to_half(direct);
         uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
         uvec3 packed_albedo = uvec3(albedo * 1023.0 + 0.5);

@@ -1,5 +1,5 @@
-// Enters triangles into the voxels that they overlap. In: geometry, materials' textures, regions and
-// batches of triangles. Out: surfels, and the index with each touched voxel's first surfel.
+// Enters triangles into the voxels that they overlap. In: geometry, materials' textures, regions
+// and batches of triangles. Out: surfels, and the index with each touched voxel's first surfel.
 //
 // LARGE 0: an invocation takes a triangle, walks the columns of voxels along its dominant axis, and
 // leaves triangles of many columns as tiles. LARGE 1: a group takes a tile, an invocation a column.
@@ -85,8 +85,8 @@ bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
     dvec3 v[3];
     for (int i = 0; i < 3; i++) {
         dvec3 local = dvec3(fetch3(w.words[i]));
-        precise dvec3 world = columns[0] * local.x + columns[1] * local.y + columns[2] * local.z +
-                              columns[3];
+        precise dvec3 world =
+            columns[0] * local.x + columns[1] * local.y + columns[2] * local.z + columns[3];
         v[i] = (world - dvec3(voxels.anchor)) / edge;
     }
     precise dvec3 normal = cross(v[1] - v[0], v[2] - v[0]);
@@ -139,7 +139,8 @@ void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
     material_block material = materials[instances[w.instance].material];
     vec4 base = vec4(1.0);
 #if VERTEX_COLORS
-    base = fetch4(w.words.x + VERTEX_COLOR) * weights.x + fetch4(w.words.y + VERTEX_COLOR) * weights.y +
+    base = fetch4(w.words.x + VERTEX_COLOR) * weights.x +
+           fetch4(w.words.y + VERTEX_COLOR) * weights.y +
            fetch4(w.words.z + VERTEX_COLOR) * weights.z;
 #endif
 #if COLOR_CLASSES > 0
@@ -159,7 +160,8 @@ void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
         point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
         square_footprint(point, ((uv[1] - uv[0]) * e2.y - (uv[2] - uv[0]) * e1.y) * inverse,
                          ((uv[2] - uv[0]) * e1.x - (uv[1] - uv[0]) * e2.x) * inverse);
-        for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u; slots &= slots - 1u) {
+        for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u;
+             slots &= slots - 1u) {
             uint slot = uint(findLSB(slots));
             vec4 texel = sample_color(material.first_texture + slot, point);
             base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
@@ -255,8 +257,8 @@ bool leave_tiles(walk w, uint triangle_number, uint region)
         return false;
     }
     for (uint i = 0u; i < total; i++)
-        tiles[first + i] = voxel_tile(w.instance, triangle_number, region,
-                                 (i % count.x) | ((i / count.x) << 16));
+        tiles[first + i] =
+            voxel_tile(w.instance, triangle_number, region, (i % count.x) | ((i / count.x) << 16));
     return true;
 }
 
