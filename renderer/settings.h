@@ -57,7 +57,6 @@ enum gather_mode {
 enum levels_per_frame { LEVELS_PER_FRAME_ALL, LEVELS_PER_FRAME_ONE, LEVELS_PER_FRAME_COUNT };
 
 #define CLIP_MAX_LEVELS 6u
-#define GI_MAX_BOUNCES  16u
 #define CONE_STEP_MIN   0.25f
 #define CONE_STEP_MAX   2.0f
 

@@ -118,11 +118,6 @@ void accuracy_session_destroy(struct accuracy_session **session_slot)
     free(session);
 }
 
-bool accuracy_session_is_over(const struct accuracy_session *session)
-{
-    return session->state >= ACCURACY_DONE;
-}
-
 cJSON *accuracy_session_progress(const struct accuracy_session *session, enum accuracy_state state,
                                  const struct accuracy_progress *progress, const char *message)
 {

@@ -51,9 +51,6 @@ void accuracy_session_remove_files(const struct accuracy_session *session);
 // Removes the files, too.
 void accuracy_session_destroy(struct accuracy_session **session);
 
-// Whether it will change no more.
-bool accuracy_session_is_over(const struct accuracy_session *session);
-
 // Params of accuracy.progress. `progress` may be NULL, `message` is of a failure.
 struct cJSON *accuracy_session_progress(const struct accuracy_session *session,
                                         enum accuracy_state state,

@@ -7,8 +7,7 @@
 
 #include "renderer/renderer.h"
 
-#define OPTIONS_MAX_ORIGINS 16u
-#define OPTIONS_TEXT_SIZE   1024u
+#define OPTIONS_TEXT_SIZE 1024u
 
 #define OPTIONS_DEFAULT_SCENE "builtin:cornell-objects"
 

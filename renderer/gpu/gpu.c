@@ -189,18 +189,6 @@ bool gpu_take_out_of_memory(struct gpu *gpu)
     return out_of_memory;
 }
 
-void gpu_flush(struct gpu *gpu)
-{
-    (void)gpu;
-    glFlush();
-}
-
-void gpu_finish(struct gpu *gpu)
-{
-    (void)gpu;
-    glFinish();
-}
-
 void gpu_push_group(struct gpu *gpu, const char *name)
 {
     (void)gpu;

@@ -46,9 +46,6 @@ void gpu_set_give_way(struct gpu *gpu, void (*give_way)(void *user), void *user)
 // A clock that stands still while `give_way` waits.
 double gpu_clock_ms(const struct gpu *gpu);
 
-void gpu_flush(struct gpu *gpu);
-void gpu_finish(struct gpu *gpu);
-
 // Debug groups, seen in captures and in debug messages.
 void gpu_push_group(struct gpu *gpu, const char *name);
 void gpu_pop_group(struct gpu *gpu);

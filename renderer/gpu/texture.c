@@ -161,11 +161,6 @@ size_t gpu_texture_texel_count(const struct gpu_texture *texture, uint32_t level
     return (width ? width : 1) * (height ? height : 1) * (depth ? depth : 1);
 }
 
-uint32_t gpu_texture_layers(const struct gpu_texture *texture)
-{
-    return texture->params.layers;
-}
-
 struct gpu_framebuffer *gpu_framebuffer_create(struct gpu *gpu, const char *label,
                                                const struct gpu_texture *color,
                                                const struct gpu_texture *depth,

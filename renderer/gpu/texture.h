@@ -52,7 +52,6 @@ uint32_t gpu_texture_name(const struct gpu_texture *texture);
 uint64_t gpu_texture_size_bytes(const struct gpu_texture *texture);
 uint32_t gpu_texture_levels(const struct gpu_texture *texture);
 size_t gpu_texture_texel_count(const struct gpu_texture *texture, uint32_t level);
-uint32_t gpu_texture_layers(const struct gpu_texture *texture);
 uint32_t gpu_texture_edge(const struct gpu_texture *texture); // width in texels
 
 // One optional colour texture and one depth texture; `layer` picks from arrays.

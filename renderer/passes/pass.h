@@ -27,7 +27,7 @@ enum resource {
     RESOURCE_COUNT
 };
 
-enum access { ACCESS_READ = 1, ACCESS_WRITE = 2, ACCESS_READ_WRITE = 3, ACCESS_HISTORY = 4 };
+enum access { ACCESS_READ = 1, ACCESS_WRITE = 2, ACCESS_READ_WRITE = 3 };
 
 #define PASS_MAX_USES 10
 

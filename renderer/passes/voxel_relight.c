@@ -39,10 +39,10 @@ const struct pass voxel_relight_pass = {
                     EFFECT_BIT(EFFECT_AREA_LIGHTS) | EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) |
                     EFFECT_BIT(EFFECT_VOXEL_COLORS),
     .gathers = true,
-    .use_count = 4,
+    // The cache of irradiance is read, too, as an earlier frame left it.
+    .use_count = 3,
     .uses = {{RESOURCE_VOXELS, ACCESS_READ},
              {RESOURCE_SHADOW_MAP, ACCESS_READ},
-             {RESOURCE_IRRADIANCE, ACCESS_HISTORY},
              {RESOURCE_VOXEL_RADIANCE, ACCESS_WRITE}},
     .skip_reason = voxel_relight_skip_reason,
     .run = voxel_relight_run,

@@ -15,7 +15,6 @@
 #define MIN_CLASS_EDGE_LOG2    4  // 16 texels
 #define MAX_CLASS_EDGE_LOG2    12 // 4096 texels
 #define MAX_SOFTWARE_EDGE_LOG2 11
-#define DEFAULT_ANISOTROPY     1.0f
 
 // On a software renderer every class costs each pixel, whether it lies in it or not: small pictures
 // are enlarged into the next class as long as that takes no more memory than this.

@@ -26,11 +26,6 @@ void mesh_builder_place(struct mesh_builder *builder, float x, float y, float z,
     glm_rotate_y(builder->placement, turn_rad, builder->placement);
 }
 
-void mesh_builder_place_at_origin(struct mesh_builder *builder)
-{
-    glm_mat4_identity(builder->placement);
-}
-
 bool mesh_builder_commit(struct mesh_builder *builder, struct scene *scene, uint32_t material)
 {
     struct triangle_mesh *mesh = &builder->mesh;
