@@ -128,7 +128,7 @@ struct render_settings {
     enum cone_set cone_set;
     float cone_step; // length of a step over the cone's diameter; 0: by the quality level
     enum gather_mode gather_mode;
-    uint32_t bounces;          // of indirect light, 1 to GI_MAX_BOUNCES; 0: unlimited
+    uint32_t bounces;          // of indirect light, 1 to 16; 0: unlimited
     float indirect_intensity;  // 1 is physical
     bool ambient_occlusion;    // darkens indirect diffuse light by the cones' occlusion
     bool soft_shadows;         // of lights that have a size

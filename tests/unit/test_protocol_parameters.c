@@ -119,7 +119,7 @@ static void ranges_match_the_renderer(void **state)
 {
     (void)state;
     check_range("clip_levels", CLIP_MAX_LEVELS);
-    check_range("bounces", GI_MAX_BOUNCES);
+    check_range("bounces", 16);
     check_range("cone_step", CONE_STEP_MAX);
 }
 

@@ -1,0 +1,54 @@
+// Proves that the sources keep the project's discipline: lengths, no code without callers, layers, and the field's
+// words in names. What breaks a rule today stands in a list beside this file, with a figure or a reason. A list may
+// only shrink: what is no longer wrong but still listed fails, too. scanners.test.mjs shows that each rule can fail.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+
+import { findUnused, judgeUnused, wordsOfAll } from './callers.mjs';
+import { CALLED_BY_TESTS } from './callers_allowed.mjs';
+import { isCode, isProduct, readSources } from './files.mjs';
+import { findBanned, judgeBanned } from './identifiers.mjs';
+import { findForeignGlCalls, findIncludes, judgeIncludes, judgeLayers } from './includes.mjs';
+import { LAYERS, UPWARD } from './layers.mjs';
+import { findExcesses, judgeExcesses } from './lengths.mjs';
+import { BANNED } from './words.mjs';
+
+const sources = readSources();
+const code = sources.filter(isCode);
+const product = code.filter(isProduct);
+
+const readList = (name) => JSON.parse(readFileSync(new URL(name, import.meta.url), 'utf8'));
+
+/** @param {string[]} wrong */
+const assertNone = (wrong) => assert.ok(wrong.length === 0, `\n${wrong.join('\n')}`);
+
+test('finds the sources', () => {
+  for (const path of ['dev', 'renderer/renderer.h', 'shaders/lib/frame.glsl', 'web_client/app.js'])
+    assert.ok(
+      sources.some((source) => source.path === path),
+      path,
+    );
+});
+
+test('files, lines and functions are short', () => {
+  assertNone(judgeExcesses(findExcesses(sources), readList('lengths_allowed.json')));
+});
+
+test('every function and every macro of the product is used there', () => {
+  const named = wordsOfAll(code.filter((file) => !isProduct(file)));
+  assertNone(judgeUnused(findUnused(product), CALLED_BY_TESTS, named));
+});
+
+test('folders include what lies below them', () => {
+  assertNone([...judgeLayers(LAYERS), ...judgeIncludes(findIncludes(product), LAYERS, UPWARD)]);
+});
+
+test('renderer/gpu alone calls GL and EGL', () => {
+  assertNone(findForeignGlCalls(product));
+});
+
+test("names use the field's words", () => {
+  const named = sources.filter((source) => isCode(source) || source.language === 'JS');
+  assertNone(judgeBanned(findBanned(named, BANNED), BANNED, readList('words_allowed.json')));
+});

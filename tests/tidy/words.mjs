@@ -1,0 +1,31 @@
+// Words that identifiers do not use, since the field has others for what they mean.
+
+/**
+ * @typedef {object} BannedWord
+ * @property {string} word  as well with an s at its end
+ * @property {string} instead
+ * @property {RegExp} [except]  identifiers that mean something else by it, or that are others' to name
+ */
+
+/** @type {BannedWord[]} */
+export const BANNED = [
+  { word: 'lamp', instead: 'light' },
+  { word: 'tree', instead: 'bvh', except: /^SceneTree$/ },
+  { word: 'least', instead: 'min', except: /least_recently_used/ },
+  { word: 'most', instead: 'max' },
+  { word: 'gather', instead: 'accumulate or final_gather' },
+  { word: 'gathered', instead: 'accumulated' },
+  { word: 'share', instead: 'visibility or fraction', except: /^VOXCAST_INSTALL_SHARE_DIR$/ },
+  { word: 'quiet', instead: 'accumulate_only' },
+  { word: 'place', instead: 'position' },
+  { word: 'resident', instead: 'gpu_scene' },
+  { word: 'gloss', instead: 'specular' },
+  { word: 'mend', instead: 'rebuild or repair' },
+  { word: 'rung', instead: 'configuration' },
+  { word: 'truth', instead: 'reference' },
+  { word: 'ladder', instead: 'sweep' },
+  { word: 'sight', instead: 'camera_ray' },
+  { word: 'openness', instead: 'ambient_visibility' },
+  { word: 'still', instead: 'accumulation' },
+  { word: 'way', instead: 'direction', except: /give_way|under_?way/i },
+];
