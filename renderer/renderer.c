@@ -9,6 +9,7 @@
 
 #include "renderer/camera.h"
 #include "renderer/finite_check.h"
+#include "renderer/frame_block.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
@@ -16,11 +17,6 @@
 #include "renderer/resident/triangle_tree.h"
 #include "renderer/view.h"
 #include "voxcast_paths.h"
-
-// Nearest visible distance, relative to the scene's diagonal, and the most it is in m: what is near
-// is to be seen however far the scene reaches. Reversed Z keeps precision anyway.
-#define NEAR_FRACTION 1e-5f
-#define NEAR_MOST_M   5e-5f
 
 struct renderer {
     struct gpu *gpu;
@@ -69,6 +65,7 @@ struct renderer *renderer_create(const struct renderer_params *params, struct er
     if (params->watch_shaders)
         gpu_programs_watch(renderer->gpu);
     gi_init(&renderer->gi, renderer->gpu);
+    renderer->gi.trace_budget = params->trace_budget;
     return renderer;
 }
 
@@ -175,84 +172,6 @@ static bool same_surfaces(const struct view *view, const struct frame_params *pa
            seen->transforms == revisions->transforms && seen->materials == revisions->materials;
 }
 
-static void fill_camera(const struct frame *frame, struct frame_block *block)
-{
-    const struct frame_params *params = frame->params;
-    struct camera_frame camera;
-    camera_frame_init(&camera, &frame->camera);
-    block->near_m = fminf(frame->resident->diagonal_m * NEAR_FRACTION, NEAR_MOST_M);
-    // Rays span the shown picture's aspect, whatever the rendered size was rounded to.
-    float aspect = (float)params->width / (float)params->height;
-    camera_clip_from_world(&camera, frame->camera.eye, aspect, block->near_m,
-                           block->clip_from_world);
-    memcpy(block->eye, frame->camera.eye, sizeof(vec3));
-    memcpy(block->forward, camera.forward, sizeof(vec3));
-    for (int axis = 0; axis < 3; axis++) {
-        float right = camera.right[axis] * camera.tan_half_fov * aspect;
-        float up = camera.up[axis] * camera.tan_half_fov;
-        block->ray_corner[axis] = camera.forward[axis] - right + up;
-        block->ray_dx[axis] = 2.0f * right / (float)frame->width;
-        block->ray_dy[axis] = -2.0f * up / (float)frame->height;
-    }
-}
-
-static void fill_sizes(const struct frame *frame, struct frame_block *block)
-{
-    const struct frame_params *params = frame->params;
-    size_t offsets[3];
-    uint32_t pitches[3];
-    view_output_layout(params, offsets, pitches);
-    memcpy(block->render_size, (uvec2){frame->width, frame->height}, sizeof(uvec2));
-    memcpy(block->tile_count, (uvec2){frame->tiles_x, frame->tiles_y}, sizeof(uvec2));
-    memcpy(block->output_size, (uvec2){params->width, params->height}, sizeof(uvec2));
-    block->luma_pitch_bytes = pitches[0];
-    block->chroma_pitch_bytes = pitches[1];
-}
-
-static void fill_display(const struct frame *frame, struct frame_block *block)
-{
-    const struct frame_params *params = frame->params;
-    const struct render_settings *settings = &params->settings;
-    bool fixed = settings->exposure_mode == EXPOSURE_FIXED;
-    block->debug_view = (uint32_t)params->debug_view;
-    block->debug_level = frame_debug_level(frame);
-    block->debug_face = (uint32_t)params->debug_face;
-    block->tonemap = (uint32_t)settings->tonemap;
-    block->gamma = settings->gamma;
-    block->exposure_scale = fixed ? exp2f(settings->exposure_ev) : 0.0f;
-    block->exposure_bias = exp2f(settings->exposure_ev);
-}
-
-static void fill_frame_block(const struct frame *frame, struct frame_block *block)
-{
-    const struct resident *resident = frame->resident;
-    const struct render_settings *settings = &frame->params->settings;
-    const struct scene_environment *environment = &resident->scene->environment;
-    *block = (struct frame_block){0};
-    fill_camera(frame, block);
-    fill_sizes(frame, block);
-    fill_display(frame, block);
-    block->scene_diagonal_m = resident->diagonal_m;
-    block->light_count = resident->counts.lights;
-    block->area_light_count = resident->counts.area_lights;
-    block->light_mask_words = (resident->counts.lights + 31) / 32;
-    float min_distance_m =
-        fminf(LIGHT_MIN_DISTANCE_FRACTION * resident->diagonal_m, LIGHT_MIN_DISTANCE_M);
-    block->light_min_distance2 = min_distance_m * min_distance_m;
-    block->cascade_count = frame->view->cascade_count;
-    block->shadow_tap_count = frame->quality->shadow_taps;
-    block->shadow_near_m = resident_shadow_near_m(resident);
-    block->all_blinn_phong = settings->shading_model == SHADING_MODEL_BLINN_PHONG;
-    block->specular_max_roughness = frame->quality->specular_roughness;
-    block->environment_intensity = environment->intensity;
-    block->environment_rotation_rad = environment->rotation_rad;
-    block->texture_max_anisotropy = frame->quality->texture_anisotropy;
-    block->texture_dither_levels = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
-    if (resident->tree)
-        memcpy(block->bvh_origin, resident->tree->center, sizeof(vec3));
-    block->ray_min_offset_m = resident->diagonal_m * NEAR_FRACTION;
-}
-
 static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)
 {
     struct view *view = frame->view;
@@ -274,7 +193,7 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     frame->tiles_x = (view->width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
     frame->tiles_y = (view->height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
     struct frame_block block;
-    fill_frame_block(frame, &block);
+    frame_block_fill(frame, &block);
     shadow_map_place_cascades(frame);
     shadow_map_relate_cascades(frame, &block);
     gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
@@ -362,6 +281,39 @@ bool renderer_may_draw(const struct renderer *renderer)
     return !renderer->may_draw || renderer->may_draw(renderer->user);
 }
 
+// Notes what the host needs to take the frame out of the ring once the GPU is through.
+static void queue_readback(const struct frame *frame, double started_ms)
+{
+    struct view *view = frame->view;
+    const struct frame_params *params = frame->params;
+    struct ring_frame *slot = &view->ring[view->ring_next];
+    slot->fence = gpu_fence_create(frame->gpu);
+    slot->started_ms = started_ms;
+    bool fixed = params->settings.exposure_mode == EXPOSURE_FIXED;
+    slot->exposure_bias = exp2f(params->settings.exposure_ev);
+    slot->fixed_exposure = fixed ? slot->exposure_bias : 0.0f;
+    slot->result = (struct frame_pixels){
+        .user_id = params->user_id,
+        .width = params->width,
+        .height = params->height,
+        .output = params->output,
+        .convergence = view_convergence(frame),
+    };
+    if (frame->reference_picture) {
+        const struct live_reference *live = &view->reference;
+        slot->result.reference_samples = live->shown_samples;
+        slot->result.reference_noise =
+            isfinite(live->progress.noise) ? (float)live->progress.noise : 0.0f;
+    }
+    view->surfaces_stale = frame->reference_picture != NULL;
+    view->last_convergence = slot->result.convergence;
+    slot->volume_serial = view->volume_serial;
+    slot->generation =
+        frame->volume && frame->light_work.trace ? frame->volume->light.generation : 0;
+    view->ring_next = (view->ring_next + 1) % RENDERER_FRAMES_IN_RING;
+    view->ring_count++;
+}
+
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error)
 {
@@ -415,31 +367,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         view->drawn = false;
         return RENDER_FAILED;
     }
-    struct ring_frame *slot = &view->ring[view->ring_next];
-    slot->fence = gpu_fence_create(renderer->gpu);
-    slot->started_ms = started_ms;
-    bool fixed = params->settings.exposure_mode == EXPOSURE_FIXED;
-    slot->exposure_bias = exp2f(params->settings.exposure_ev);
-    slot->fixed_exposure = fixed ? slot->exposure_bias : 0.0f;
-    slot->result = (struct frame_pixels){
-        .user_id = params->user_id,
-        .width = params->width,
-        .height = params->height,
-        .output = params->output,
-        .convergence = view_convergence(&frame),
-    };
-    if (frame.reference_picture) {
-        const struct live_reference *live = &view->reference;
-        slot->result.reference_samples = live->shown_samples;
-        slot->result.reference_noise =
-            isfinite(live->progress.noise) ? (float)live->progress.noise : 0.0f;
-    }
-    view->surfaces_stale = frame.reference_picture != NULL;
-    view->last_convergence = slot->result.convergence;
-    slot->volume_serial = view->volume_serial;
-    slot->generation = frame.volume && frame.light_work.trace ? frame.volume->light.generation : 0;
-    view->ring_next = (view->ring_next + 1) % RENDERER_FRAMES_IN_RING;
-    view->ring_count++;
+    queue_readback(&frame, started_ms);
     view->drawn = true;
     view->last_params = *params;
     view->last_revisions = revisions;

@@ -34,6 +34,9 @@ struct renderer_params {
     const char *gpu;        // "auto" (or NULL), "software", or a device index such as "0"
     const char *shader_dir; // NULL: VOXCAST_SHADER_DIR, the installed folder, or the source tree
     bool watch_shaders;     // reload shaders when their files change
+    // Entries of the irradiance cache that a frame traces; 0: as many as measured times allow, so
+    // that pictures that have not converged depend on the machine.
+    uint32_t trace_budget;
     // Both may wait until others have drawn, and that time is no part of any that is measured;
     // NULL: nobody is asked.
     bool (*may_draw)(void *user); // before each frame; false refuses it

@@ -425,6 +425,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         .camera_moved = frame->visibility_changed,
         .software = gpu_get_info(gi->gpu)->software,
         .levels_per_frame = settings->levels_per_frame,
+        .trace_budget = gi->trace_budget,
     };
     voxel_light_begin(volume, &light, &frame->light_work);
     return true;

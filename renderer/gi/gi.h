@@ -21,6 +21,7 @@ struct gi {
         uint64_t serial;
     } volumes[GI_MAX_VOLUMES];
     uint64_t next_serial;
+    uint32_t trace_budget; // of renderer_params
 };
 
 void gi_init(struct gi *gi, struct gpu *gpu);

@@ -42,6 +42,8 @@ static uint32_t generations_needed(const struct voxel_light_params *params)
 static double entry_budget(const struct voxel_volume *volume,
                            const struct voxel_light_params *params)
 {
+    if (params->trace_budget > 0)
+        return params->trace_budget;
     if (!params->software)
         return GPU_BUDGET;
     double entry_ms = volume->light.entry_ms > 0.0 ? volume->light.entry_ms : FIRST_ENTRY_MS;

@@ -24,6 +24,7 @@ struct voxel_light_params {
     bool camera_moved;
     bool software;
     enum levels_per_frame levels_per_frame;
+    uint32_t trace_budget; // entries; 0: by time
 };
 
 // Decides what the frame does. After voxel_volume_update().

@@ -147,16 +147,108 @@ vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
 }
 #endif
 
+// What a material says of a point, with its textures.
+struct material_point {
+    vec4 base;
+    vec3 emission;
+    float metallic;
+    float roughness;
+    float occlusion;
+    float specular;
+    vec3 specular_color;
+    float transmission;
+    vec3 normal; // world
+};
+
+#if TEXTURED
+texture_point find_texture_point(triangle t, sight ray, vec3 weights)
+{
+    texture_point point;
+    point.level_dither = dither_level(ray.pixel);
+    vec3 weights_dx = plane_weights(t, ray.direction + ray.dx);
+    vec3 weights_dy = plane_weights(t, ray.direction + ray.dy);
+#if SECOND_UV_SET
+    vec4 uv[3] = {fetch4(t.words.x + VERTEX_UV), fetch4(t.words.y + VERTEX_UV),
+                  fetch4(t.words.z + VERTEX_UV)};
+#else
+    vec2 uv[3] = {fetch2(t.words.x + VERTEX_UV), fetch2(t.words.y + VERTEX_UV),
+                  fetch2(t.words.z + VERTEX_UV)};
+#endif
+    point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
+    point.dx = uv[0] * weights_dx.x + uv[1] * weights_dx.y + uv[2] * weights_dx.z - point.uv;
+    point.dy = uv[0] * weights_dy.x + uv[1] * weights_dy.y + uv[2] * weights_dy.z - point.uv;
+    return point;
+}
+
+// Loops over the slots in use, so that the sampler code is compiled once per space.
+void apply_textures(triangle t, sight ray, vec3 weights, material_block material,
+                    inout material_point p)
+{
+    texture_point point = find_texture_point(t, ray, weights);
+#if COLOR_CLASSES > 0
+    for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u;
+         slots &= slots - 1u) {
+        uint slot = uint(findLSB(slots));
+        vec4 texel = sample_color(material.first_texture + slot, point);
+        p.base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
+        p.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
+        p.specular_color *= slot == TEXTURE_SPECULAR_COLOR ? texel.rgb : vec3(1.0);
+    }
+#endif
+#if DATA_CLASSES > 0
+    vec3 tangent_space = vec3(0.0, 0.0, 1.0);
+    for (uint slots = material.texture_mask & ~COLOR_TEXTURE_SLOTS; slots != 0u;
+         slots &= slots - 1u) {
+        uint slot = uint(findLSB(slots));
+        vec4 texel = sample_data(material.first_texture + slot, point);
+        p.roughness *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.g : 1.0;
+        p.metallic *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.b : 1.0;
+        p.occlusion +=
+            slot == TEXTURE_OCCLUSION ? material.occlusion_strength * (texel.r - 1.0) : 0.0;
+        p.transmission *= slot == TEXTURE_TRANSMISSION ? texel.r : 1.0;
+        p.specular *= slot == TEXTURE_SPECULAR ? texel.a : 1.0;
+        if (slot == TEXTURE_NORMAL)
+            tangent_space =
+                vec3((texel.xy * 2.0 - 1.0) * material.normal_scale, texel.z * 2.0 - 1.0);
+    }
+    if ((material.texture_mask & (1u << TEXTURE_NORMAL)) != 0u)
+        p.normal = mapped_normal(t, tangent_space, weights, p.normal);
+#endif
+}
+#endif
+
+material_point find_material_point(triangle t, sight ray, vec3 weights, material_block material,
+                                   vec3 normal)
+{
+    material_point p;
+    p.base = material.base_color;
+#if VERTEX_COLORS
+    p.base *= interpolate4(t, VERTEX_COLOR, weights);
+#endif
+    p.emission = material.emission;
+    p.metallic = material.metallic;
+    p.roughness = material.roughness;
+    p.occlusion = 1.0;
+    p.specular = material.specular;
+    p.specular_color = material.specular_color;
+    p.transmission = material.transmission;
+    p.normal = normal;
+#if TEXTURED
+    if (material.texture_mask != 0u)
+        apply_textures(t, ray, weights, material, p);
+#endif
+    return p;
+}
+
 // Evaluates what a ray sees of the triangle. Back faces are turned to the viewer.
 surface load_surface(uint id, sight ray, out layer through)
 {
     triangle t = fetch_triangle(id, ray.origin);
-    vec3 direction = ray.direction;
-    vec3 weights = plane_weights(t, direction);
+    vec3 weights = plane_weights(t, ray.direction);
     material_block material = materials[instances[t.instance].material];
 
     surface s;
-    s.view = -normalize(direction);
+    s.view = -normalize(ray.direction);
     s.position = ray.origin + t.corner + weights.y * t.edges[0] + weights.z * t.edges[1];
     vec3 face = -t.volumes[0];
     float mirrored = (instances[t.instance].flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
@@ -167,84 +259,26 @@ surface load_surface(uint id, sight ray, out layer through)
     vec3 turned = cross(t.linear[1], t.linear[2]) * local_normal.x +
                   cross(t.linear[2], t.linear[0]) * local_normal.y +
                   cross(t.linear[0], t.linear[1]) * local_normal.z;
-    s.normal = safe_normalize(turned * mirrored, s.geometric_normal);
-    vec4 base = material.base_color;
-#if VERTEX_COLORS
-    base *= interpolate4(t, VERTEX_COLOR, weights);
-#endif
-    float metallic = material.metallic;
-    float roughness = material.roughness;
-    float occlusion = 1.0;
-    float weight = material.specular;
-    vec3 specular_color = material.specular_color;
-    float transmission = material.transmission;
-    s.emission = material.emission;
-#if TEXTURED
-    if (material.texture_mask != 0u) {
-        texture_point point;
-        point.level_dither = dither_level(ray.pixel);
-        vec3 weights_dx = plane_weights(t, direction + ray.dx);
-        vec3 weights_dy = plane_weights(t, direction + ray.dy);
-#if SECOND_UV_SET
-        vec4 uv[3] = {fetch4(t.words.x + VERTEX_UV), fetch4(t.words.y + VERTEX_UV),
-                      fetch4(t.words.z + VERTEX_UV)};
-#else
-        vec2 uv[3] = {fetch2(t.words.x + VERTEX_UV), fetch2(t.words.y + VERTEX_UV),
-                      fetch2(t.words.z + VERTEX_UV)};
-#endif
-        point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
-        point.dx = uv[0] * weights_dx.x + uv[1] * weights_dx.y + uv[2] * weights_dx.z - point.uv;
-        point.dy = uv[0] * weights_dy.x + uv[1] * weights_dy.y + uv[2] * weights_dy.z - point.uv;
-        // Loops over the slots in use, so that the sampler code is compiled once per space.
-#if COLOR_CLASSES > 0
-        for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u;
-             slots &= slots - 1u) {
-            uint slot = uint(findLSB(slots));
-            vec4 texel = sample_color(material.first_texture + slot, point);
-            base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
-            s.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
-            specular_color *= slot == TEXTURE_SPECULAR_COLOR ? texel.rgb : vec3(1.0);
-        }
-#endif
-#if DATA_CLASSES > 0
-        vec3 tangent_space = vec3(0.0, 0.0, 1.0);
-        for (uint slots = material.texture_mask & ~COLOR_TEXTURE_SLOTS; slots != 0u;
-             slots &= slots - 1u) {
-            uint slot = uint(findLSB(slots));
-            vec4 texel = sample_data(material.first_texture + slot, point);
-            roughness *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.g : 1.0;
-            metallic *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.b : 1.0;
-            occlusion +=
-                slot == TEXTURE_OCCLUSION ? material.occlusion_strength * (texel.r - 1.0) : 0.0;
-            transmission *= slot == TEXTURE_TRANSMISSION ? texel.r : 1.0;
-            weight *= slot == TEXTURE_SPECULAR ? texel.a : 1.0;
-            if (slot == TEXTURE_NORMAL)
-                tangent_space =
-                    vec3((texel.xy * 2.0 - 1.0) * material.normal_scale, texel.z * 2.0 - 1.0);
-        }
-        if ((material.texture_mask & (1u << TEXTURE_NORMAL)) != 0u)
-            s.normal = mapped_normal(t, tangent_space, weights, s.normal);
-#endif
-    }
-#endif
+    material_point p = find_material_point(t, ray, weights, material,
+                                           safe_normalize(turned * mirrored, s.geometric_normal));
+    s.normal = p.normal;
     if (dot(s.geometric_normal, s.view) < 0.0) {
         s.geometric_normal = -s.geometric_normal;
         s.normal = -s.normal;
     }
-    s.base_color = clamp(base.rgb, 0.0, 1.0);
-    s.metallic = clamp(metallic, 0.0, 1.0);
-    s.roughness = clamp(roughness, 0.0, 1.0);
-    s.occlusion = clamp(occlusion, 0.0, 1.0);
-    s.f0 = min(material.f0 * specular_color, 1.0) * weight;
-    s.f90 = (material.flags & MATERIAL_IOR_ONE) != 0u ? 0.0 : weight;
+    s.base_color = clamp(p.base.rgb, 0.0, 1.0);
+    s.metallic = clamp(p.metallic, 0.0, 1.0);
+    s.roughness = clamp(p.roughness, 0.0, 1.0);
+    s.occlusion = clamp(p.occlusion, 0.0, 1.0);
+    s.f0 = min(material.f0 * p.specular_color, 1.0) * p.specular;
+    s.f90 = (material.flags & MATERIAL_IOR_ONE) != 0u ? 0.0 : p.specular;
     s.shading = material.flags & MATERIAL_SHADING_MASK;
     s.thin = (material.flags & MATERIAL_DOUBLE_SIDED) != 0u;
-    if (s.shading == SHADE_UNLIT)
-        s.emission = s.base_color;
+    s.emission = s.shading == SHADE_UNLIT ? s.base_color : p.emission;
 
     bool blend = (material.flags & MATERIAL_ALPHA_BLEND) != 0u;
-    through.alpha = blend ? clamp(base.a, 0.0, 1.0) : 1.0;
-    through.transmission = transmission * (1.0 - s.metallic);
+    through.alpha = blend ? clamp(p.base.a, 0.0, 1.0) : 1.0;
+    through.transmission = p.transmission * (1.0 - s.metallic);
     through.thickness_m = material.thickness_m;
     through.ior = material.ior;
     through.attenuation_color = material.attenuation_color;

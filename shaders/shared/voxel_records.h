@@ -29,7 +29,7 @@
 #define FACE_DIRECT     6u  // two words: emitted and directly lit radiance / scale, optical depth
 #define FACE_ALBEDO     8u  // reflectance, 3 x 10 bits
 #define FACE_CELL       9u  // cell * 8 + face
-#define FACE_SHOWN      10u // two words: light averaged over neighbours, as FACE_LIGHT: what pixels see
+#define FACE_SHOWN      10u // two words: light averaged over neighbours, as FACE_LIGHT
 #define FACE_VALID      0x400000u   // its light means something
 #define FACE_MARCHED    0x800000u   // its cones' hits, too; epoch tells of which geometry
 #define FACE_THIN       0x40000000u // a surface without thickness: its back is in this voxel, too

@@ -130,6 +130,42 @@ vec3 direct_irradiance(vec3 position, vec3 normal, bool thin, float voxel_m)
 #endif
 }
 
+// Writes what a side has into a record of the irradiance cache, and adds its light to the sums.
+void store_side(uint cell, uint level, ivec3 voxel, uint i, side s, inout face_sums sums)
+{
+    uint words = make_face(cell, level, voxel, i);
+    if (words == VOXEL_NONE)
+        return;
+    float inverse = 1.0 / s.weight;
+    vec3 normal = safe_normalize(s.normal, face_direction(i));
+    vec3 place = clamp(s.place * inverse, 0.0, 1.0);
+    vec3 position = voxels.anchor + (vec3(voxel) + place) * voxels.levels[level].voxel_edge_m;
+    vec3 albedo = clamp(s.reflectance * inverse, 0.0, 1.0);
+    vec3 direct =
+        s.emission * (inverse / voxels.radiance_scale) +
+        albedo * direct_irradiance(position, normal, s.thin, voxels.levels[level].voxel_edge_m);
+    // In proportion to what is covered: the parts of a slanted wall that lie in neighbouring
+    // voxels then add up to a whole one.
+    float opacity = min(s.opacity * inverse, 1.0);
+    // Halves that are touched overstate what hardly covers them, such as slivers.
+    float covered = min(coverage(s.mask, i >> 1u), s.weight / float(SURFEL_WEIGHT_SCALE));
+    float depth = covered * min(-log(max(1.0 - opacity, 1e-9)), float(VOXEL_MAX_DEPTH));
+    direct = cut_to_half(direct);
+    uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
+    uvec3 packed_albedo = uvec3(albedo * 1023.0 + 0.5);
+    faces[words + FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));
+    faces[words + FACE_PLACE] = packed_place.x | (packed_place.y << 10) | (packed_place.z << 20) |
+                                (s.thin ? FACE_THIN : 0u);
+    faces[words + FACE_DIRECT] = packHalf2x16(direct.rg);
+    faces[words + FACE_DIRECT + 1u] = packHalf2x16(vec2(direct.b, depth));
+    faces[words + FACE_ALBEDO] =
+        packed_albedo.x | (packed_albedo.y << 10) | (packed_albedo.z << 20);
+#if FEEDBACK
+    direct += albedo * face_light(words).rgb;
+#endif
+    add_face(sums, normal, vec4(direct, depth));
+}
+
 void main()
 {
     uint number = gl_GlobalInvocationID.x;
@@ -145,18 +181,9 @@ void main()
         if (cells[cell * CELL_WORDS + CELL_FACES + i] != 0u)
             return;
 #endif
-    vec3 corner = vec3(slot_voxel(level, slot));
     side sides[VOXEL_FACES];
-    for (uint i = 0u; i < VOXEL_FACES; i++) {
-        sides[i].weight = 0.0;
-        sides[i].mask = 0u;
-        sides[i].normal = vec3(0.0);
-        sides[i].place = vec3(0.0);
-        sides[i].reflectance = vec3(0.0);
-        sides[i].emission = vec3(0.0);
-        sides[i].opacity = 0.0;
-        sides[i].thin = false;
-    }
+    for (uint i = 0u; i < VOXEL_FACES; i++)
+        sides[i] = side(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, false);
     for (uint at = cells[cell * CELL_WORDS + CELL_SURFEL]; at != VOXEL_NONE;
          at = surfels[at * SURFEL_WORDS + SURFEL_NEXT]) {
         uint word = at * SURFEL_WORDS;
@@ -172,7 +199,7 @@ void main()
         }
     }
     face_sums sums = no_face_sums();
-    ivec3 voxel = ivec3(corner);
+    ivec3 voxel = slot_voxel(level, slot);
     for (uint i = 0u; i < VOXEL_FACES; i++) {
         if (sides[i].weight == 0.0) {
             uint old = cell_face(cell, i);
@@ -180,38 +207,7 @@ void main()
                 faces[old + FACE_NORMAL] = VOXEL_NONE;
             continue;
         }
-        uint words = make_face(cell, level, voxel, i);
-        if (words == VOXEL_NONE)
-            continue;
-        float inverse = 1.0 / sides[i].weight;
-        vec3 normal = safe_normalize(sides[i].normal, face_direction(i));
-        vec3 place = clamp(sides[i].place * inverse, 0.0, 1.0);
-        vec3 position = voxels.anchor + (corner + place) * voxels.levels[level].voxel_edge_m;
-        vec3 albedo = clamp(sides[i].reflectance * inverse, 0.0, 1.0);
-        vec3 direct = sides[i].emission * (inverse / voxels.radiance_scale) +
-                      albedo * direct_irradiance(position, normal, sides[i].thin,
-                                                 voxels.levels[level].voxel_edge_m);
-        // In proportion to what is covered: the parts of a slanted wall that lie in neighbouring
-        // voxels then add up to a whole one.
-        float opacity = min(sides[i].opacity * inverse, 1.0);
-        // Halves that are touched overstate what hardly covers them, such as slivers.
-        float covered =
-            min(coverage(sides[i].mask, i >> 1u), sides[i].weight / float(SURFEL_WEIGHT_SCALE));
-        float depth = covered * min(-log(max(1.0 - opacity, 1e-9)), float(VOXEL_MAX_DEPTH));
-        direct = cut_to_half(direct);
-        uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
-        uvec3 packed_albedo = uvec3(albedo * 1023.0 + 0.5);
-        faces[words + FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));
-        faces[words + FACE_PLACE] = packed_place.x | (packed_place.y << 10) |
-                                    (packed_place.z << 20) | (sides[i].thin ? FACE_THIN : 0u);
-        faces[words + FACE_DIRECT] = packHalf2x16(direct.rg);
-        faces[words + FACE_DIRECT + 1u] = packHalf2x16(vec2(direct.b, depth));
-        faces[words + FACE_ALBEDO] =
-            packed_albedo.x | (packed_albedo.y << 10) | (packed_albedo.z << 20);
-#if FEEDBACK
-        direct += albedo * face_light(words).rgb;
-#endif
-        add_face(sums, normal, vec4(direct, depth));
+        store_side(cell, level, voxel, i, sides[i], sums);
     }
     store_faces(sums, level, slot);
 }
