@@ -203,8 +203,8 @@ void add_voxel(inout walk w, ivec3 voxel, uint mask)
     vec3 weights = max(vec3(1.0 - bc.x - bc.y, bc), 0.0);
     sample_surface(w, weights / (weights.x + weights.y + weights.z), f);
 #endif
-    ivec3 place = from_abc(voxel, w.axis);
-    uint word = voxels.levels[w.level].first_index + voxel_slot(w.level, place);
+    ivec3 address = from_abc(voxel, w.axis);
+    uint word = voxels.levels[w.level].first_index + voxel_slot(w.level, address);
     uint surfel = find_surfel(word, w.key, w.spare);
     if (surfel != VOXEL_NONE)
         add_fragment(surfel, f);
