@@ -26,7 +26,7 @@ enum field_bit {
     PIXEL_Y = 1 << 13,
     SET = 1 << 14,  // an object of parameters
     FLAT = 1 << 15, // parameters beside the fields
-    LADDER = 1 << 16,
+    SWEEP = 1 << 16,
     NOISE = 1 << 17,
     SECONDS = 1 << 18,
 };
@@ -39,8 +39,8 @@ struct field {
     const char *const *choices; // ended by NULL
 };
 
-const char *const command_ladder_names[LADDER_COUNT + 1] = {
-    [LADDER_QUICK] = "quick", [LADDER_FULL] = "full"};
+const char *const command_sweep_names[SWEEP_COUNT + 1] = {
+    [SWEEP_QUICK] = "quick", [SWEEP_FULL] = "full"};
 
 static const struct field fields[] = {
     {"id", TARGET, FIELD_INTEGER, 0, UINT32_MAX - 1.0},
@@ -57,7 +57,7 @@ static const struct field fields[] = {
     {"source", SOURCE, FIELD_STRING, 0, PROTOCOL_MAX_SOURCE_BYTES},
     {"x", PIXEL_X, FIELD_NUMBER, 0, 4096},
     {"y", PIXEL_Y, FIELD_NUMBER, 0, 2160},
-    {"ladder", LADDER, FIELD_CHOICE, 0, 0, command_ladder_names},
+    {"ladder", SWEEP, FIELD_CHOICE, 0, 0, command_sweep_names},
     {"noise", NOISE, FIELD_NUMBER, 0.0005, 0.1},
     {"seconds", SECONDS, FIELD_NUMBER, 1, 86400},
 };
@@ -98,7 +98,7 @@ static const struct method_row methods[METHOD_COUNT] = {
     [METHOD_EDIT_REDO] = {"edit.redo", METHOD_EDITS, GROUP_COUNT, EDIT_ID, 0},
     [METHOD_PICK] = {"pick", 0, GROUP_COUNT, PIXEL_X | PIXEL_Y, PIXEL_X | PIXEL_Y},
     [METHOD_FRAME_ACK] = {"frame.ack", 0, GROUP_COUNT, FRAME_ID, FRAME_ID},
-    [METHOD_ACCURACY_START] = {"accuracy.start", 0, GROUP_COUNT, LADDER | NOISE | SECONDS, 0},
+    [METHOD_ACCURACY_START] = {"accuracy.start", 0, GROUP_COUNT, SWEEP | NOISE | SECONDS, 0},
     [METHOD_ACCURACY_CANCEL] = {"accuracy.cancel", 0, GROUP_COUNT, 0, 0},
 };
 
@@ -218,8 +218,8 @@ static void store_field(const struct field *field, const cJSON *item, struct com
     case PIXEL_Y:
         command->y = number;
         break;
-    case LADDER:
-        command->ladder = (enum command_ladder)find_choice(field->choices, item);
+    case SWEEP:
+        command->sweep = (enum command_sweep)find_choice(field->choices, item);
         break;
     case NOISE:
         command->noise = number;

@@ -41,9 +41,9 @@ enum method_flags {
 };
 
 // Which rungs accuracy.start measures.
-enum command_ladder { LADDER_QUICK, LADDER_FULL, LADDER_COUNT };
+enum command_sweep { SWEEP_QUICK, SWEEP_FULL, SWEEP_COUNT };
 
-extern const char *const command_ladder_names[LADDER_COUNT + 1]; // ended by NULL
+extern const char *const command_sweep_names[SWEEP_COUNT + 1]; // ended by NULL
 
 #define COMMAND_DEFAULT_NOISE   0.01
 #define COMMAND_DEFAULT_SECONDS 120.0
@@ -64,9 +64,9 @@ struct command {
     uint64_t revision; // of camera.set; frame_id of frame.ack
     bool has_resume;   // both of the following came
     uint64_t resume_epoch, resume_revision;
-    double x, y;                // of pick
-    enum command_ladder ladder; // of accuracy.start
-    double noise, seconds;      // likewise
+    double x, y;              // of pick
+    enum command_sweep sweep; // of accuracy.start
+    double noise, seconds;    // likewise
     char name[PROTOCOL_MAX_NAME_BYTES + 1];
     char token[PROTOCOL_MAX_TOKEN_BYTES + 1];
     char source[PROTOCOL_MAX_SOURCE_BYTES + 1];

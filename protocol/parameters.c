@@ -45,7 +45,7 @@ const char *const parameter_type_names[PARAMETER_TYPE_COUNT] = {
         group, name, PARAMETER_COLOR, PARAMETER_LIVE, 0, 1, 0.01, "", fallback, NULL, doc          \
     }
 
-#define ANY_PLACE_M      1e7
+#define MAX_POSITION_M   1e7
 #define QUARTER_TURN_RAD 1.5708 // a quarter turn, rounded up so that the float nearest to it passes
 #define FULL_TURN_RAD    6.2832
 #define MAX_EMITTED      1e7
@@ -71,7 +71,7 @@ static const struct parameter parameters[] = {
            "Spot: half angle at which the light ends."),
     FLOAT_(GROUP_LIGHT, "radius_m", 0, 1000, 0.01, "m", "0",
            "Radius of a spherical source; 0 is a mathematical point."),
-    VEC3_(GROUP_LIGHT, "position", 0, ANY_PLACE_M, 0.1, "m", "[0,0,0]", "World position."),
+    VEC3_(GROUP_LIGHT, "position", 0, MAX_POSITION_M, 0.1, "m", "[0,0,0]", "World position."),
     VEC3_(GROUP_LIGHT, "direction", PARAMETER_NONZERO, 1.0, 0.01, "", "[0,-1,0]",
           "World direction in which the light shines; any length but zero."),
 
@@ -108,7 +108,7 @@ static const struct parameter parameters[] = {
            "Colour of white light after attenuation_distance_m."),
 
     STRING_(GROUP_NODE, "name", "Name shown to people."),
-    VEC3_(GROUP_NODE, "translation", 0, ANY_PLACE_M, 0.1, "m", "[0,0,0]",
+    VEC3_(GROUP_NODE, "translation", 0, MAX_POSITION_M, 0.1, "m", "[0,0,0]",
           "Relative to the parent."),
     {GROUP_NODE, "rotation", PARAMETER_QUATERNION, PARAMETER_LIVE | PARAMETER_NONZERO, -1, 1, 0.01,
      "", "[0,0,0,1]", NULL, "Relative to the parent: x, y, z, w."},
@@ -206,8 +206,9 @@ static const struct parameter parameters[] = {
             "Rung of this client's newest measurement of accuracy to draw its pictures with, "
             "whatever the shared settings are; empty: with those."),
 
-    VEC3_(GROUP_CAMERA, "eye", 0, ANY_PLACE_M, 0.1, "m", "[0,0,5]", "World position of the eye."),
-    VEC3_(GROUP_CAMERA, "target", 0, ANY_PLACE_M, 0.1, "m", "[0,0,0]",
+    VEC3_(GROUP_CAMERA, "eye", 0, MAX_POSITION_M, 0.1, "m", "[0,0,5]",
+          "World position of the eye."),
+    VEC3_(GROUP_CAMERA, "target", 0, MAX_POSITION_M, 0.1, "m", "[0,0,0]",
           "World point in the middle of the picture; not the eye."),
     VEC3_(GROUP_CAMERA, "up", PARAMETER_NONZERO, 1.0, 0.01, "", "[0,1,0]",
           "World direction towards the picture's top; any length but zero."),

@@ -138,7 +138,7 @@ static char *print_and_delete(cJSON *message)
     cJSON_Delete(message);
     // Names from files, and texts cut to fit a buffer, may not be valid; a browser would hang up.
     if (text)
-        utf8_mend(text);
+        utf8_repair(text);
     return text;
 }
 

@@ -21,7 +21,7 @@ size_t utf8_sequence_length(const unsigned char *bytes, size_t left)
     return count;
 }
 
-void utf8_mend(char *text)
+void utf8_repair(char *text)
 {
     size_t left = strlen(text);
     while (left > 0) {

@@ -9,6 +9,6 @@
 size_t utf8_sequence_length(const unsigned char *bytes, size_t left);
 
 // Replaces bytes that are not valid UTF-8, as a cut text may end with, by '?'.
-void utf8_mend(char *text);
+void utf8_repair(char *text);
 
 #endif

@@ -4,18 +4,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool draw_list_reserve(struct draw_list *list, const struct resident *resident)
+bool draw_list_reserve(struct draw_list *list, const struct gpu_scene *gpu_scene)
 {
-    uint32_t wanted = resident->cluster_count ? resident->cluster_count : 1;
+    uint32_t wanted = gpu_scene->cluster_count ? gpu_scene->cluster_count : 1;
     if (list->capacity >= wanted)
         return true;
     draw_list_finish(list);
     list->scratch_commands = malloc(wanted * sizeof(*list->scratch_commands));
     list->scratch_records = malloc(wanted * sizeof(*list->scratch_records));
     if (!list->scratch_commands || !list->scratch_records ||
-        !gpu_buffer_ensure(resident->gpu, &list->commands, "view.draws", GPU_BUFFER_STATIC,
+        !gpu_buffer_ensure(gpu_scene->gpu, &list->commands, "view.draws", GPU_BUFFER_STATIC,
                            wanted * sizeof(*list->scratch_commands)) ||
-        !gpu_buffer_ensure(resident->gpu, &list->records, "view.draws", GPU_BUFFER_STATIC,
+        !gpu_buffer_ensure(gpu_scene->gpu, &list->records, "view.draws", GPU_BUFFER_STATIC,
                            wanted * sizeof(*list->scratch_records)))
         return false;
     list->capacity = wanted;
@@ -79,8 +79,9 @@ struct instance_cull {
     vec3 eye_local;
 };
 
-static void instance_cull_init(struct instance_cull *cull, const struct resident_instance *instance,
-                               const vec4 planes[6], const mat4 clip_from_world, const float *eye)
+static void instance_cull_init(struct instance_cull *cull,
+                               const struct gpu_scene_instance *instance, const vec4 planes[6],
+                               const mat4 clip_from_world, const float *eye)
 {
     cull->planes = planes;
     const float *m = instance->world_from_local;
@@ -107,7 +108,7 @@ static void instance_cull_init(struct instance_cull *cull, const struct resident
 
 // Sides of planes survive any affine placement, so that facing can be told in local space.
 static bool cluster_is_hidden(const struct instance_cull *cull,
-                              const struct resident_cluster *cluster)
+                              const struct gpu_scene_cluster *cluster)
 {
     const float *m = cull->matrix, *c = cluster->center;
     vec3 center;
@@ -124,8 +125,8 @@ static bool cluster_is_hidden(const struct instance_cull *cull,
 }
 
 // Appends one draw of triangles first .. first + count - 1 of an instance.
-static void append_draw(struct draw_list *list, uint32_t *total, const struct resident *resident,
-                        const struct resident_instance *instance, const struct instance_cull *cull,
+static void append_draw(struct draw_list *list, uint32_t *total, const struct gpu_scene *gpu_scene,
+                        const struct gpu_scene_instance *instance, const struct instance_cull *cull,
                         uint32_t first, uint32_t count)
 {
     list->scratch_commands[*total] = (struct gpu_draw){
@@ -137,37 +138,37 @@ static void append_draw(struct draw_list *list, uint32_t *total, const struct re
     struct gpu_draw_record *record = &list->scratch_records[*total];
     memcpy(record->clip_rows, cull->clip_rows, sizeof(record->clip_rows));
     record->first_id = instance->first_id + 1;
-    record->material = resident->scene->primitives[instance->primitive].material;
+    record->material = gpu_scene->scene->primitives[instance->primitive].material;
     (*total)++;
 }
 
 static void append_instance(struct draw_list *list, uint32_t *total,
-                            const struct resident *resident, uint32_t instance_number,
+                            const struct gpu_scene *gpu_scene, uint32_t instance_number,
                             const struct instance_cull *cull)
 {
-    const struct resident_instance *instance = &resident->instances[instance_number];
+    const struct gpu_scene_instance *instance = &gpu_scene->instances[instance_number];
     const uint32_t cluster_triangles = 1u << ID_BLOCK_BITS;
     uint32_t triangles = instance->index_count / 3;
     uint32_t run_first = 0, run_count = 0;
     for (uint32_t at = 0; at < triangles; at += cluster_triangles) {
         uint32_t left = triangles - at;
         uint32_t count = left < cluster_triangles ? left : cluster_triangles;
-        const struct resident_cluster *cluster =
-            &resident->clusters[instance->cluster_first + (at >> ID_BLOCK_BITS)];
+        const struct gpu_scene_cluster *cluster =
+            &gpu_scene->clusters[instance->cluster_first + (at >> ID_BLOCK_BITS)];
         if (!cluster_is_hidden(cull, cluster)) {
             if (run_count == 0)
                 run_first = at;
             run_count += count;
         } else if (run_count > 0) {
-            append_draw(list, total, resident, instance, cull, run_first, run_count);
+            append_draw(list, total, gpu_scene, instance, cull, run_first, run_count);
             run_count = 0;
         }
     }
     if (run_count > 0)
-        append_draw(list, total, resident, instance, cull, run_first, run_count);
+        append_draw(list, total, gpu_scene, instance, cull, run_first, run_count);
 }
 
-void draw_list_fill(struct draw_list *list, const struct resident *resident,
+void draw_list_fill(struct draw_list *list, const struct gpu_scene *gpu_scene,
                     const mat4 clip_from_world, const float *eye)
 {
     vec4 planes[6];
@@ -175,14 +176,14 @@ void draw_list_fill(struct draw_list *list, const struct resident *resident,
     uint32_t total = 0;
     for (uint32_t group = 0; group < DRAW_GROUP_COUNT; group++) {
         list->first[group] = total;
-        for (uint32_t i = 0; i < resident->counts.instances; i++) {
-            const struct resident_instance *instance = &resident->instances[i];
+        for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
+            const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
             if (!instance->visible || instance->group != group ||
                 box_is_outside((const vec4 *)planes, instance->bounds_min, instance->bounds_max))
                 continue;
             struct instance_cull cull;
             instance_cull_init(&cull, instance, (const vec4 *)planes, clip_from_world, eye);
-            append_instance(list, &total, resident, i, &cull);
+            append_instance(list, &total, gpu_scene, i, &cull);
         }
         list->count[group] = total - list->first[group];
     }
@@ -192,15 +193,15 @@ void draw_list_fill(struct draw_list *list, const struct resident *resident,
                      list->scratch_records);
 }
 
-void draw_list_draw(const struct draw_list *list, const struct resident *resident,
+void draw_list_draw(const struct draw_list *list, const struct gpu_scene *gpu_scene,
                     const struct gpu_program *program, enum draw_kind kind, bool cull_by_group)
 {
     for (uint32_t cull = 0; cull < DRAW_CULL_COUNT; cull++) {
         uint32_t group = (uint32_t)kind * DRAW_CULL_COUNT + cull;
-        gpu_draw_indirect(resident->gpu,
+        gpu_draw_indirect(gpu_scene->gpu,
                           &(struct gpu_draw_params){
                               .program = program,
-                              .geometry = resident->geometry,
+                              .geometry = gpu_scene->geometry,
                               .draws = list->commands,
                               .records = list->records,
                               .first = list->first[group],

@@ -15,15 +15,15 @@ static const struct {
     [EFFECT_PUNCTUAL_LIGHTS] = {"punctual_lights", "PUNCTUAL_LIGHTS"},
     [EFFECT_AREA_LIGHTS] = {"area_lights", "AREA_LIGHTS"},
     [EFFECT_SHADOWS] = {"shadows", "SHADOWS"},
-    [EFFECT_FLAT_SHADOWS] = {"flat_shadows", "FLAT_SHADOWS"},
-    [EFFECT_CUBE_SHADOWS] = {"cube_shadows", "CUBE_SHADOWS"},
+    [EFFECT_SINGLE_VIEW_SHADOWS] = {"flat_shadows", "SINGLE_VIEW_SHADOWS"},
+    [EFFECT_POINT_SHADOWS] = {"cube_shadows", "POINT_SHADOWS"},
     [EFFECT_LIGHT_TILES] = {"light_tiles", "LIGHT_TILES"},
     [EFFECT_BLINN_PHONG] = {"blinn_phong", "BLINN_PHONG"},
     [EFFECT_ENVIRONMENT] = {"environment", "ENVIRONMENT"},
     [EFFECT_TRANSPARENCY] = {"transparency", "TRANSPARENCY"},
     [EFFECT_AUTO_EXPOSURE] = {"auto_exposure", "AUTO_EXPOSURE"},
-    [EFFECT_INDIRECT_DIFFUSE] = {"indirect_diffuse", "VOXEL_LIGHT"},
-    [EFFECT_BOUNCE] = {"bounce", "FEEDBACK"},
+    [EFFECT_INDIRECT_DIFFUSE] = {"indirect_diffuse", "INDIRECT_DIFFUSE"},
+    [EFFECT_MULTI_BOUNCE] = {"bounce", "MULTI_BOUNCE"},
     [EFFECT_INDIRECT_SPECULAR] = {"indirect_specular", "INDIRECT_SPECULAR"},
     [EFFECT_REFRACTION] = {"refraction", "REFRACTION"},
     [EFFECT_SOFT_SHADOWS] = {"soft_shadows", "SOFT_SHADOWS"},
@@ -45,10 +45,10 @@ static void decide(struct effect_plan *plan, enum effect effect, bool on, const 
     snprintf(plan->reasons[effect], sizeof(plan->reasons[effect]), "%s", reason);
 }
 
-static bool has_environment(const struct resident *resident)
+static bool has_environment(const struct gpu_scene *gpu_scene)
 {
-    return resident->scene->environment.type != SCENE_ENVIRONMENT_NONE &&
-           resident->scene->environment.intensity > 0.0f;
+    return gpu_scene->scene->environment.type != SCENE_ENVIRONMENT_NONE &&
+           gpu_scene->scene->environment.intensity > 0.0f;
 }
 
 static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t count,
@@ -64,16 +64,16 @@ static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t 
 
 // Effects of global illumination. Returns those that the settings allow: the rest stay off even
 // where everything is forced.
-static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *resident,
+static uint32_t plan_indirect(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
                               const struct frame_params *params)
 {
     const struct render_settings *settings = &params->settings;
-    const struct resident_counts *counts = &resident->counts;
+    const struct gpu_scene_counts *counts = &gpu_scene->counts;
     const struct quality_level *level = &quality_levels[params->quality];
     bool rays = settings->gather_mode == GATHER_RAYS ||
                 (settings->gather_mode == GATHER_AUTO && level->gather_mode == GATHER_RAYS);
     static const enum effect all[] = {
-        EFFECT_INDIRECT_DIFFUSE,  EFFECT_BOUNCE,       EFFECT_INDIRECT_SPECULAR,
+        EFFECT_INDIRECT_DIFFUSE,  EFFECT_MULTI_BOUNCE, EFFECT_INDIRECT_SPECULAR,
         EFFECT_REFRACTION,        EFFECT_SOFT_SHADOWS, EFFECT_AMBIENT_OCCLUSION,
         EFFECT_ENVIRONMENT_LIGHT, EFFECT_VOXEL_COLORS, EFFECT_CLIP_LEVELS};
     if (settings->gi_method == GI_METHOD_NONE || settings->gi_method == GI_METHOD_REFERENCE) {
@@ -83,7 +83,7 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
                                                          : "the method is reference");
         return 0;
     }
-    bool environment = settings->environment_light && has_environment(resident);
+    bool environment = settings->environment_light && has_environment(gpu_scene);
     bool source = counts->lights > 0 || counts->emissive_materials > 0 || environment;
     bool reflected = source && counts->reflective_materials > 0;
     const struct {
@@ -94,8 +94,8 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
         {EFFECT_INDIRECT_DIFFUSE, true, reflected || debug_view_needs_voxels(params->debug_view),
          reflected ? "light meets surfaces that reflect" : "the debug view shows voxels",
          source ? "every surface is black or unlit" : "nothing in the scene gives light"},
-        {EFFECT_BOUNCE, settings->bounces != 1, reflected, "surfaces reflect what they receive",
-         "no surface reflects light"},
+        {EFFECT_MULTI_BOUNCE, settings->bounces != 1, reflected,
+         "surfaces reflect what they receive", "no surface reflects light"},
         {EFFECT_INDIRECT_SPECULAR, settings->indirect_specular,
          source && counts->specular_materials > 0, "a material reflects like a gloss",
          "no specular material in the scene"},
@@ -115,10 +115,10 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
         bool on = rules[i].allowed && rules[i].on;
         allowed |= rules[i].allowed ? EFFECT_BIT(rules[i].effect) : 0;
         decide(plan, rules[i].effect, on,
-               !rules[i].allowed
-                   ? (rules[i].effect == EFFECT_BOUNCE ? "one bounce asked for" : "switched off")
-               : on ? rules[i].because
-                    : rules[i].missing);
+               !rules[i].allowed ? (rules[i].effect == EFFECT_MULTI_BOUNCE ? "one bounce asked for"
+                                                                           : "switched off")
+               : on              ? rules[i].because
+                                 : rules[i].missing);
     }
     bool colors = counts->textured_materials > 0 || counts->colored_primitives > 0;
     decide(plan, EFFECT_VOXEL_COLORS, colors,
@@ -129,12 +129,12 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct resident *r
     return allowed | EFFECT_BIT(EFFECT_VOXEL_COLORS);
 }
 
-void effects_plan(struct effect_plan *plan, const struct resident *resident,
+void effects_plan(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
                   const struct frame_params *params)
 {
     *plan = (struct effect_plan){0};
     const struct render_settings *settings = &params->settings;
-    const struct resident_counts *counts = &resident->counts;
+    const struct gpu_scene_counts *counts = &gpu_scene->counts;
     decide_count(plan, EFFECT_TEXTURES, counts->textured_materials, "textured material");
     decide_count(plan, EFFECT_ALPHA_MASK, counts->masked_materials, "alpha-masked material");
     decide_count(plan, EFFECT_VERTEX_COLORS, counts->colored_primitives,
@@ -144,10 +144,10 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
     decide_count(plan, EFFECT_AREA_LIGHTS, counts->area_lights, "planar emitter");
     decide_count(plan, EFFECT_LIGHT_TILES, counts->ranged_lights, "light of limited range");
     decide_count(plan, EFFECT_TRANSPARENCY, counts->transparent_materials, "transparent material");
-    static const enum effect shadow_effects[] = {EFFECT_SHADOWS, EFFECT_FLAT_SHADOWS,
-                                                 EFFECT_CUBE_SHADOWS};
-    const uint32_t shadow_counts[] = {counts->shadow_layers, counts->flat_shadows,
-                                      counts->cube_shadows};
+    static const enum effect shadow_effects[] = {EFFECT_SHADOWS, EFFECT_SINGLE_VIEW_SHADOWS,
+                                                 EFFECT_POINT_SHADOWS};
+    const uint32_t shadow_counts[] = {counts->shadow_layers, counts->single_view_shadows,
+                                      counts->point_shadows};
     for (int i = 0; i < 3; i++)
         if (settings->shadows)
             decide_count(plan, shadow_effects[i], shadow_counts[i],
@@ -161,7 +161,7 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
     else
         decide_count(plan, EFFECT_BLINN_PHONG, counts->blinn_phong_materials,
                      "Blinn-Phong material");
-    bool environment = has_environment(resident);
+    bool environment = has_environment(gpu_scene);
     decide(plan, EFFECT_ENVIRONMENT, environment,
            environment ? "the scene has an environment" : "no environment in the scene");
     bool automatic = settings->exposure_mode == EXPOSURE_AUTOMATIC;
@@ -169,14 +169,14 @@ void effects_plan(struct effect_plan *plan, const struct resident *resident,
            automatic ? "exposure is automatic" : "exposure is fixed");
     uint32_t chosen = EFFECT_BIT(EFFECT_AUTO_EXPOSURE) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                       ((1u << EFFECT_COUNT) - EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE));
-    uint32_t allowed = plan_indirect(plan, resident, params) | ~chosen;
+    uint32_t allowed = plan_indirect(plan, gpu_scene, params) | ~chosen;
     if (settings->force_all_effects)
         for (int i = 0; i < EFFECT_COUNT; i++)
             if ((allowed & EFFECT_BIT(i)) && !(plan->bits & EFFECT_BIT(i)))
                 decide(plan, (enum effect)i, true, "forced");
 }
 
-void effects_write_defines(uint32_t bits, uint32_t mask, const struct resident *resident,
+void effects_write_defines(uint32_t bits, uint32_t mask, const struct gpu_scene *gpu_scene,
                            char *out_text, size_t out_size)
 {
     size_t used = 0;
@@ -189,9 +189,9 @@ void effects_write_defines(uint32_t bits, uint32_t mask, const struct resident *
             written = snprintf(out_text + used, out_size - used,
                                "COLOR_CLASSES %u\nDATA_CLASSES %u\nTEXTURE_TRANSFORMS %d\n"
                                "SECOND_UV_SET %d\n",
-                               resident->texture_spaces[TEXTURE_SPACE_COLOR].class_count,
-                               resident->texture_spaces[TEXTURE_SPACE_DATA].class_count,
-                               resident->texture_transforms, resident->second_uv_set);
+                               gpu_scene->texture_spaces[TEXTURE_SPACE_COLOR].class_count,
+                               gpu_scene->texture_spaces[TEXTURE_SPACE_DATA].class_count,
+                               gpu_scene->texture_transforms, gpu_scene->second_uv_set);
         else
             written = snprintf(out_text + used, out_size - used, "%s %d\n", effects[i].define,
                                (bits & EFFECT_BIT(i)) != 0);

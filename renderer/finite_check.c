@@ -91,7 +91,7 @@ static void add_view(struct checked_list *list, const struct view *view)
         item->low_halves = 1u << 7;
     }
     add_buffer(list, "radiance", RESOURCE_RADIANCE, view->radiance);
-    add_buffer(list, "gathered", RESOURCE_RADIANCE, view->gathered);
+    add_buffer(list, "gathered", RESOURCE_RADIANCE, view->accumulation);
     if (view->last_params.output == FRAME_OUTPUT_LINEAR)
         add_buffer(list, "output", RESOURCE_OUTPUT, view->output);
     add_buffer(list, "shadow_views", NOT_WRITTEN, view->shadow_views);
@@ -108,15 +108,15 @@ static void add_volume(struct checked_list *list, const struct voxel_volume *vol
     faces->low_halves |= ~((1u << FACE_WORDS) - 1); // distances of the cones' hits
 }
 
-static void add_scene(struct checked_list *list, const struct resident *resident)
+static void add_scene(struct checked_list *list, const struct gpu_scene *gpu_scene)
 {
     // The last vector of lights and instances is of numbers that count.
-    add_blocks(list, "lights", resident->lights, 20, 0xffff);
-    add_blocks(list, "instances", resident->instance_blocks, 20, 0xffff);
-    add_blocks(list, "materials", resident->materials, 32, 0x0fffffff);
-    add_blocks(list, "vertices", resident->vertices, VERTEX_WORDS, 0x1fe7);
-    add_buffer(list, "environment", NOT_WRITTEN, resident->environment);
-    add_texture(list, "environment_levels", NOT_WRITTEN, resident->environment_levels,
+    add_blocks(list, "lights", gpu_scene->lights, 20, 0xffff);
+    add_blocks(list, "instances", gpu_scene->instance_blocks, 20, 0xffff);
+    add_blocks(list, "materials", gpu_scene->materials, 32, 0x0fffffff);
+    add_blocks(list, "vertices", gpu_scene->vertices, VERTEX_WORDS, 0x1fe7);
+    add_buffer(list, "environment", NOT_WRITTEN, gpu_scene->environment);
+    add_texture(list, "environment_levels", NOT_WRITTEN, gpu_scene->environment_levels,
                 TEXTURE_ARRAY);
 }
 
@@ -166,8 +166,8 @@ bool finite_check_run(const struct finite_check *check, struct finite_report *ou
     add_view(&list, check->view);
     if (check->volume)
         add_volume(&list, check->volume);
-    if (check->resident)
-        add_scene(&list, check->resident);
+    if (check->gpu_scene)
+        add_scene(&list, check->gpu_scene);
     struct check_block found = {0};
     for (uint32_t i = 0; i < FINITE_MAX_RESOURCES; i++)
         found.results[i].first = UINT32_MAX;

@@ -5,12 +5,12 @@
 #include "renderer/renderer.h"
 
 struct gpu;
-struct resident;
+struct gpu_scene;
 struct voxel_volume;
 
 struct finite_check {
     struct gpu *gpu;
-    const struct resident *resident; // NULL for none
+    const struct gpu_scene *gpu_scene; // NULL for none
     const struct view *view;
     const struct voxel_volume *volume; // that the view was drawn with; NULL for none
 };

@@ -12,14 +12,14 @@
 // Nearest visible distance, relative to the scene's diagonal, and the most it is in m: what is near
 // is to be seen however far the scene reaches. Reversed Z keeps precision anyway.
 #define NEAR_FRACTION 1e-5f
-#define NEAR_MOST_M   5e-5f
+#define NEAR_MAX_M    5e-5f
 
 static void fill_camera(const struct frame *frame, struct frame_block *block)
 {
     const struct frame_params *params = frame->params;
     struct camera_frame camera;
     camera_frame_init(&camera, &frame->camera);
-    block->near_m = fminf(frame->resident->diagonal_m * NEAR_FRACTION, NEAR_MOST_M);
+    block->near_m = fminf(frame->gpu_scene->diagonal_m * NEAR_FRACTION, NEAR_MAX_M);
     // Rays span the shown picture's aspect, whatever the rendered size was rounded to.
     float aspect = (float)params->width / (float)params->height;
     camera_clip_from_world(&camera, frame->camera.eye, aspect, block->near_m,
@@ -64,30 +64,30 @@ static void fill_display(const struct frame *frame, struct frame_block *block)
 
 void frame_block_fill(const struct frame *frame, struct frame_block *block)
 {
-    const struct resident *resident = frame->resident;
+    const struct gpu_scene *gpu_scene = frame->gpu_scene;
     const struct render_settings *settings = &frame->params->settings;
-    const struct scene_environment *environment = &resident->scene->environment;
+    const struct scene_environment *environment = &gpu_scene->scene->environment;
     *block = (struct frame_block){0};
     fill_camera(frame, block);
     fill_sizes(frame, block);
     fill_display(frame, block);
-    block->scene_diagonal_m = resident->diagonal_m;
-    block->light_count = resident->counts.lights;
-    block->area_light_count = resident->counts.area_lights;
-    block->light_mask_words = (resident->counts.lights + 31) / 32;
+    block->scene_diagonal_m = gpu_scene->diagonal_m;
+    block->light_count = gpu_scene->counts.lights;
+    block->area_light_count = gpu_scene->counts.area_lights;
+    block->light_mask_words = (gpu_scene->counts.lights + 31) / 32;
     float min_distance_m =
-        fminf(LIGHT_MIN_DISTANCE_FRACTION * resident->diagonal_m, LIGHT_MIN_DISTANCE_M);
+        fminf(LIGHT_MIN_DISTANCE_FRACTION * gpu_scene->diagonal_m, LIGHT_MIN_DISTANCE_M);
     block->light_min_distance2 = min_distance_m * min_distance_m;
     block->cascade_count = frame->view->cascade_count;
     block->shadow_tap_count = frame->quality->shadow_taps;
-    block->shadow_near_m = resident_shadow_near_m(resident);
+    block->shadow_near_m = gpu_scene_shadow_near_m(gpu_scene);
     block->all_blinn_phong = settings->shading_model == SHADING_MODEL_BLINN_PHONG;
     block->specular_max_roughness = frame->quality->specular_roughness;
     block->environment_intensity = environment->intensity;
     block->environment_rotation_rad = environment->rotation_rad;
     block->texture_max_anisotropy = frame->quality->texture_anisotropy;
     block->texture_dither_levels = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
-    if (resident->tree)
-        memcpy(block->bvh_origin, resident->tree->center, sizeof(vec3));
-    block->ray_min_offset_m = resident->diagonal_m * NEAR_FRACTION;
+    if (gpu_scene->bvh)
+        memcpy(block->bvh_origin, gpu_scene->bvh->center, sizeof(vec3));
+    block->ray_min_offset_m = gpu_scene->diagonal_m * NEAR_FRACTION;
 }

@@ -20,7 +20,7 @@
 
 struct renderer {
     struct gpu *gpu;
-    struct resident *resident; // NULL while nothing is shown
+    struct gpu_scene *gpu_scene; // NULL while nothing is shown
     struct scene *scene;
     uint64_t scene_number; // tells scenes apart that were loaded one after another
     struct gi gi;
@@ -28,9 +28,9 @@ struct renderer {
     struct view *views[RENDERER_MAX_VIEWS]; // the first view_count
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
-    struct live_scene live_scene; // of references
-    bool lost;                    // the GL context
-    bool (*may_draw)(void *user); // NULL: always
+    struct live_scene live_scene;    // of references
+    bool lost;                       // the GL context
+    bool (*admit_frame)(void *user); // NULL: always
     void *user;
 };
 
@@ -54,14 +54,14 @@ struct renderer *renderer_create(const struct renderer_params *params, struct er
         return NULL;
     }
     assert(passes_check(all_passes, PASS_COUNT, NULL));
-    renderer->may_draw = params->may_draw;
+    renderer->admit_frame = params->admit_frame;
     renderer->user = params->user;
     renderer->gpu = gpu_create(params->gpu, find_shader_dir(params), out_error);
     if (!renderer->gpu) {
         free(renderer);
         return NULL;
     }
-    gpu_set_give_way(renderer->gpu, params->give_way, params->user);
+    gpu_set_yield(renderer->gpu, params->yield, params->user);
     if (params->watch_shaders)
         gpu_programs_watch(renderer->gpu);
     gi_init(&renderer->gi, renderer->gpu);
@@ -79,7 +79,7 @@ void renderer_destroy(struct renderer **renderer_slot)
     ray_scene_destroy(&renderer->ray_scene);
     live_scene_finish(&renderer->live_scene);
     gi_finish(&renderer->gi);
-    resident_destroy(&renderer->resident);
+    gpu_scene_destroy(&renderer->gpu_scene);
     gpu_destroy(&renderer->gpu);
     free(renderer);
 }
@@ -111,10 +111,10 @@ uint64_t renderer_gl_error_count(const struct renderer *renderer)
 
 bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct error *out_error)
 {
-    struct resident *resident = NULL;
+    struct gpu_scene *gpu_scene = NULL;
     if (scene) {
-        resident = resident_create(renderer->gpu, scene, out_error);
-        if (!resident)
+        gpu_scene = gpu_scene_create(renderer->gpu, scene, out_error);
+        if (!gpu_scene)
             return false;
     }
     for (uint32_t i = 0; i < renderer->view_count; i++) {
@@ -124,8 +124,8 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
     ray_scene_destroy(&renderer->ray_scene);
     live_scene_finish(&renderer->live_scene);
     gi_release_all(&renderer->gi);
-    resident_destroy(&renderer->resident);
-    renderer->resident = resident;
+    gpu_scene_destroy(&renderer->gpu_scene);
+    renderer->gpu_scene = gpu_scene;
     renderer->scene = scene;
     renderer->scene_number++;
     return true;
@@ -186,7 +186,7 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
         frame->visibility_changed = true;
         frame->unchanged = false;
     }
-    if (!gi_plan_gathering(frame, out_error))
+    if (!gi_plan_accumulation(frame, out_error))
         return false;
     frame->width = view->width;
     frame->height = view->height;
@@ -194,12 +194,12 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     frame->tiles_y = (view->height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
     struct frame_block block;
     frame_block_fill(frame, &block);
-    shadow_map_place_cascades(frame);
+    shadow_map_fit_cascades(frame);
     shadow_map_relate_cascades(frame, &block);
     gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
     if (frame->visibility_changed)
-        draw_list_fill(&view->draws, frame->resident, block.clip_from_world, frame->camera.eye);
-    resident_bind(frame->resident);
+        draw_list_fill(&view->draws, frame->gpu_scene, block.clip_from_world, frame->camera.eye);
+    gpu_scene_bind(frame->gpu_scene);
     view_bind(view);
     if (frame->volume)
         voxel_volume_bind(frame->volume);
@@ -270,15 +270,15 @@ static float view_convergence(const struct frame *frame)
     if (!frame->volume)
         return 1.0f;
     float light = voxel_light_convergence(frame->volume);
-    if (light < 1.0f || frame->still_frames <= 1)
+    if (light < 1.0f || frame->accumulation_target <= 1)
         return light < 1.0f ? 0.9f * light : 1.0f;
-    float averaged = (float)frame->still_count / (float)frame->still_frames;
+    float averaged = (float)frame->accumulated_samples / (float)frame->accumulation_target;
     return fminf(0.9f + 0.1f * averaged, 1.0f);
 }
 
-bool renderer_may_draw(const struct renderer *renderer)
+bool renderer_admit_frame(const struct renderer *renderer)
 {
-    return !renderer->may_draw || renderer->may_draw(renderer->user);
+    return !renderer->admit_frame || renderer->admit_frame(renderer->user);
 }
 
 // Notes what the host needs to take the frame out of the ring once the GPU is through.
@@ -317,7 +317,7 @@ static void queue_readback(const struct frame *frame, double started_ms)
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error)
 {
-    if (!renderer_may_draw(renderer)) {
+    if (!renderer_admit_frame(renderer)) {
         error_set(out_error, "no more frames are wanted");
         return RENDER_FAILED;
     }
@@ -329,13 +329,13 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     double started_ms = gpu_clock_ms(renderer->gpu);
     if (!params_are_valid(params, out_error))
         return RENDER_FAILED;
-    if (!renderer->resident) {
+    if (!renderer->gpu_scene) {
         error_set(out_error, "no scene is shown");
         return RENDER_FAILED;
     }
     if (view->ring_count == RENDERER_FRAMES_IN_RING)
         return RENDER_BUSY;
-    struct resident *resident = renderer->resident;
+    struct gpu_scene *gpu_scene = renderer->gpu_scene;
     const struct scene_revisions revisions = renderer->scene->revisions;
     bool same_scene = view->drawn && view->last_scene == renderer->scene_number;
     bool same = same_scene && params_equal(&view->last_params, params) &&
@@ -345,7 +345,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
 
     struct frame frame = {
         .gpu = renderer->gpu,
-        .resident = resident,
+        .gpu_scene = gpu_scene,
         .view = view,
         .params = params,
         .camera = params->camera,
@@ -354,14 +354,14 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .visibility_changed =
             !same_scene || view->surfaces_stale || !same_surfaces(view, params, &revisions),
     };
-    resident_place(resident, params->camera.eye, frame.camera.eye);
-    resident_place(resident, params->camera.target, frame.camera.target);
+    gpu_scene_from_world(gpu_scene, params->camera.eye, frame.camera.eye);
+    gpu_scene_from_world(gpu_scene, params->camera.target, frame.camera.target);
     enum render_result result = take_reference(renderer, &frame, same);
     if (result != RENDER_DRAWN)
         return result;
-    if (!resident_update(resident, out_error))
+    if (!gpu_scene_update(gpu_scene, out_error))
         return RENDER_FAILED;
-    effects_plan(&frame.plan, resident, params);
+    effects_plan(&frame.plan, gpu_scene, params);
     view->last_plan = frame.plan; // reasons for skipping passes may point there
     if (!draw_frame(renderer, &frame, out_error)) {
         view->drawn = false;
@@ -389,7 +389,7 @@ static void collect_light(struct renderer *renderer, struct view *view,
         return;
     struct voxel_light_report report;
     memcpy(&report, bytes, sizeof(report));
-    volume->cut = report.cut;
+    volume->clamped = report.clamped;
     if (slot->generation == 0)
         return;
     gpu_timer_poll(view->timer);
@@ -485,8 +485,8 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
         {"triangles_left_out", rejects->triangles},
         {"vertices_mended", rejects->vertices},
         {"parameters_clamped", rejects->parameters},
-        {"voxel_values_cut", volume ? volume->cut : 0},
-        {"lamps_without_shadow", renderer->resident ? renderer->resident->counts.unshadowed : 0},
+        {"voxel_values_cut", volume ? volume->clamped : 0},
+        {"lamps_without_shadow", renderer->gpu_scene ? renderer->gpu_scene->counts.unshadowed : 0},
     };
     statistics->reject_count = sizeof(found) / sizeof(found[0]);
     memcpy(statistics->rejects, found, sizeof(found));
@@ -496,7 +496,7 @@ bool renderer_check_finite(struct renderer *renderer, const struct view *view,
                            struct finite_report *out_report, struct error *out_error)
 {
     const struct finite_check check = {.gpu = renderer->gpu,
-                                       .resident = renderer->resident,
+                                       .gpu_scene = renderer->gpu_scene,
                                        .view = view,
                                        .volume = gi_find(&renderer->gi, view->volume_serial)};
     return finite_check_run(&check, out_report, out_error);

@@ -39,8 +39,8 @@ struct renderer_params {
     uint32_t trace_budget;
     // Both may wait until others have drawn, and that time is no part of any that is measured;
     // NULL: nobody is asked.
-    bool (*may_draw)(void *user); // before each frame; false refuses it
-    void (*give_way)(void *user); // before each piece of work of a CPU driver, within frames
+    bool (*admit_frame)(void *user); // before each frame; false refuses it
+    void (*yield)(void *user);       // before each piece of work of a CPU driver, within frames
     void *user;
 };
 
@@ -121,8 +121,8 @@ enum render_result {
 enum render_result renderer_view_draw(struct renderer *renderer, struct view *view,
                                       const struct frame_params *params, struct error *out_error);
 
-// What renderer_params.may_draw says now; true without it.
-bool renderer_may_draw(const struct renderer *renderer);
+// What renderer_params.admit_frame says now; true without it.
+bool renderer_admit_frame(const struct renderer *renderer);
 
 // Makes the next renderer_view_draw() draw everything anew even if nothing has changed.
 void renderer_view_invalidate(struct view *view);
@@ -140,7 +140,7 @@ struct frame_pixels {
     float reference_noise;      // standard error of a pixel over the mean luminance; 0: unknown
     float convergence;    // 0 to 1: how far indirect light and averaging have come; 1 is final
     double frame_time_ms; // wall time from the call of renderer_view_draw to the pixels being here,
-                          // but for that of renderer_params.give_way
+                          // but for that of renderer_params.yield
 };
 
 // The oldest finished frame, or false if none is ready (with `wait`: if none is under way). The

@@ -86,7 +86,7 @@ enum debug_view {
     DEBUG_VIEW_VOXEL_IRRADIANCE,
     DEBUG_VIEW_INDIRECT_DIFFUSE,
     DEBUG_VIEW_INDIRECT_SPECULAR,
-    DEBUG_VIEW_AMBIENT_OCCLUSION, // openness: white sees no occluder nearby
+    DEBUG_VIEW_AMBIENT_OCCLUSION, // ambient visibility: white sees no occluder nearby
     DEBUG_VIEW_CACHE_AGE,         // colours as in shaders/debug/cache_view.comp
     DEBUG_VIEW_TILE_CLASSES,      // colours as in shaders/debug/tile_classes.comp
     DEBUG_VIEW_COUNT

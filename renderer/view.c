@@ -37,7 +37,7 @@ static void destroy_sized_targets(struct view *view)
     gpu_buffer_destroy(&view->light_masks);
     gpu_buffer_destroy(&view->fragments);
     gpu_buffer_destroy(&view->transparent_tiles);
-    gpu_buffer_destroy(&view->gathered);
+    gpu_buffer_destroy(&view->accumulation);
     gpu_buffer_destroy(&view->glossy_tiles);
     view->width = 0;
     view->height = 0;
@@ -128,7 +128,7 @@ static bool prepare_cascades(struct view *view, struct shadow_map *map, uint32_t
         uint32_t number = shadow_map_take_cascade(map);
         if (number == UINT32_MAX)
             return false;
-        view->cascade_placed[view->cascade_count] = false;
+        view->cascade_fitted[view->cascade_count] = false;
         view->cascade_numbers[view->cascade_count++] = number;
     }
     return true;
@@ -141,16 +141,16 @@ static bool prepare_indirect(struct view *view, const struct frame *frame)
     uint32_t effect_bits = frame->plan.bits;
     enum gather_mode gather = frame->volume ? gi_gather_mode(frame) : GATHER_CACHE;
     uint32_t step = gi_gather_step(frame);
-    size_t gathered =
+    size_t accumulation =
         (size_t)((view->width + step - 1) / step) * ((view->height + step - 1) / step);
-    gathered *= gi_gathered_pictures(frame);
+    accumulation *= gi_accumulation_planes(frame);
     if (gi_wants_ray_shadows(frame))
-        gathered += (size_t)view->width * view->height;
+        accumulation += (size_t)view->width * view->height;
     if (gather == GATHER_CACHE)
-        gpu_buffer_destroy(&view->gathered);
+        gpu_buffer_destroy(&view->accumulation);
     else
-        done = gpu_buffer_ensure(view->gpu, &view->gathered, "view.gathered", GPU_BUFFER_STATIC,
-                                 gathered * sizeof(vec4));
+        done = gpu_buffer_ensure(view->gpu, &view->accumulation, "view.gathered", GPU_BUFFER_STATIC,
+                                 accumulation * sizeof(vec4));
     size_t tiles = (size_t)((view->width + GROUP_EDGE - 1) / GROUP_EDGE) *
                    ((view->height + GROUP_EDGE - 1) / GROUP_EDGE);
     if (effect_bits & EFFECT_BIT(EFFECT_INDIRECT_SPECULAR))
@@ -170,7 +170,7 @@ static float resolution_scale(const struct frame *frame)
     // While light settles no picture lasts, so that those of a camera at rest are not supersampled
     // until it has; unless pixels are what asks for light.
     bool settling = frame->volume && !frame->volume->light.converged &&
-                    !frame->visibility_changed && frame_has(frame, EFFECT_BOUNCE);
+                    !frame->visibility_changed && frame_has(frame, EFFECT_MULTI_BOUNCE);
     if (settling)
         return fminf(frame->quality->resolution_scale, 1.0f);
     return frame->quality->resolution_scale;
@@ -179,7 +179,7 @@ static float resolution_scale(const struct frame *frame)
 bool view_prepare(struct view *view, const struct frame *frame)
 {
     const struct frame_params *params = frame->params;
-    const struct resident *resident = frame->resident;
+    const struct gpu_scene *gpu_scene = frame->gpu_scene;
     uint32_t effect_bits = frame->plan.bits;
     float scale = resolution_scale(frame);
     // The largest views are not supersampled beyond what GPU memory is planned for.
@@ -203,12 +203,12 @@ bool view_prepare(struct view *view, const struct frame *frame)
         gpu_buffer_ensure(gpu, &view->output, "view.output", GPU_BUFFER_STATIC, output_bytes) &&
         gpu_buffer_ensure(gpu, &view->ring[view->ring_next].pixels, "readback", GPU_BUFFER_READBACK,
                           output_bytes + VIEW_EXPOSURE_BYTES + VIEW_REPORT_BYTES) &&
-        draw_list_reserve(&view->draws, resident) &&
-        draw_list_reserve(&view->shadow_draws, resident);
+        draw_list_reserve(&view->draws, gpu_scene) &&
+        draw_list_reserve(&view->shadow_draws, gpu_scene);
     if (effect_bits & EFFECT_BIT(EFFECT_LIGHT_TILES)) {
         size_t tiles = (size_t)((width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE) *
                        ((height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE);
-        size_t words = (resident->counts.lights + 31) / 32;
+        size_t words = (gpu_scene->counts.lights + 31) / 32;
         done = done && gpu_buffer_ensure(gpu, &view->light_masks, "view.light_masks",
                                          GPU_BUFFER_STATIC, tiles * words * 4);
     } else {
@@ -228,8 +228,8 @@ bool view_prepare(struct view *view, const struct frame *frame)
     }
     done = done && prepare_indirect(view, frame);
     bool cascades =
-        (effect_bits & EFFECT_BIT(EFFECT_SHADOWS)) && resident->directional_light != NO_SHADOW;
-    return done && prepare_cascades(view, resident->shadow_map,
+        (effect_bits & EFFECT_BIT(EFFECT_SHADOWS)) && gpu_scene->directional_light != NO_SHADOW;
+    return done && prepare_cascades(view, gpu_scene->shadow_map,
                                     cascades ? frame->quality->shadow_cascades : 0);
 }
 
@@ -245,7 +245,7 @@ void view_bind(const struct view *view)
     gpu_bind_storage(gpu, BIND_EXPOSURE, view->exposure);
     gpu_bind_storage(gpu, BIND_FRAGMENTS, view->fragments);
     gpu_bind_storage(gpu, BIND_TILES, view->transparent_tiles);
-    gpu_bind_storage(gpu, BIND_INDIRECT, view->gathered);
+    gpu_bind_storage(gpu, BIND_INDIRECT, view->accumulation);
     gpu_bind_texture(gpu, UNIT_IDS, view->ids);
     gpu_bind_texture(gpu, UNIT_DEPTH, view->depth);
 }

@@ -54,7 +54,7 @@ struct view {
     uint32_t cascade_count;
     uint32_t cascade_numbers[MAX_CASCADES];
     float cascade_center[MAX_CASCADES][3];
-    bool cascade_placed[MAX_CASCADES]; // the centre above is to be kept while it suits
+    bool cascade_fitted[MAX_CASCADES]; // the centre above is to be kept while it suits
     bool cascade_stale[MAX_CASCADES];  // to be drawn
     struct shadow_view_block cascades[MAX_CASCADES];
 
@@ -66,11 +66,12 @@ struct view {
 
     uint64_t volume_serial; // of the volume that the newest frame was drawn with; 0 for none
 
-    struct gpu_buffer *gathered; // irradiance that pixels have gathered, summed over still frames
-    uint32_t still_count;        // pictures in that sum
-    uint64_t shown_light;        // version of the light in voxels that the newest picture shows
-    uint32_t quiet_count;        // frames since then
-    uint64_t gathered_key; // of the light, of the cones that saw it, and of what was asked for
+    struct gpu_buffer
+        *accumulation;            // irradiance that pixels have gathered, summed over still frames
+    uint32_t accumulated_samples; // pictures in that sum
+    uint64_t shown_light;         // version of the light in voxels that the newest picture shows
+    uint32_t accumulate_only_count; // frames since then
+    uint64_t accumulation_key; // of the light, of the cones that saw it, and of what was asked for
     struct gpu_buffer
         *glossy_tiles; // arguments and numbers of tiles that reflections are traced in
 

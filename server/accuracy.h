@@ -5,56 +5,57 @@
 
 #include "server/cli_shot.h"
 
-#define RUNG_NAME_SIZE   64u
-#define RUNG_TEXT_SIZE   64u
-#define RUNG_MAX_SETS    16u
-#define LADDER_MAX_RUNGS 256u
+#define CONFIGURATION_NAME_SIZE  64u
+#define CONFIGURATION_TEXT_SIZE  64u
+#define CONFIGURATION_MAX_SETS   16u
+#define SWEEP_MAX_CONFIGURATIONS 256u
 
 // Noise of the truth over the smallest error, up to which errors are believed.
-#define RESULTS_NOISE_SHARE 0.1
+#define RESULTS_NOISE_FRACTION 0.1
 
 struct cJSON;
 
 // One setting that is measured.
-struct rung {
-    char name[RUNG_NAME_SIZE]; // letters, digits, '-', '_' and '.': names its files
+struct configuration {
+    char name[CONFIGURATION_NAME_SIZE]; // letters, digits, '-', '_' and '.': names its files
     enum quality quality;
     double scale; // size it is rendered at over the size shown: 0.25 to 1, or 2
     uint32_t set_count;
     struct {
-        char key[RUNG_TEXT_SIZE], value[RUNG_TEXT_SIZE]; // a field of settings
-    } sets[RUNG_MAX_SETS];
+        char key[CONFIGURATION_TEXT_SIZE], value[CONFIGURATION_TEXT_SIZE]; // a field of settings
+    } sets[CONFIGURATION_MAX_SETS];
 };
 
-struct ladder {
-    uint32_t rung_count;
-    struct rung rungs[LADDER_MAX_RUNGS];
+struct sweep {
+    uint32_t configuration_count;
+    struct configuration configurations[SWEEP_MAX_CONFIGURATIONS];
 };
 
 // "quick" (the presets), "full" (methods, voxels, gather modes, cones, steps, bounces, levels and
 // scales, in turn), or a file: a JSON array of {"name", "preset", "scale", "set": {"KEY": VALUE}},
 // all but the name optional. False with a message that names rung, key and range.
-bool ladder_load(const char *name, struct ladder *out_ladder, struct error *out_error);
+bool sweep_load(const char *name, struct sweep *out_sweep, struct error *out_error);
 
 // Applies quality and sets; size and scale are the caller's.
-bool rung_apply(const struct rung *rung, struct frame_params *params, struct error *out_error);
+bool configuration_apply(const struct configuration *configuration, struct frame_params *params,
+                         struct error *out_error);
 
 // {"preset", "scale", "set"}: equal text means equal settings. The caller deletes it.
-struct cJSON *rung_json(const struct rung *rung);
+struct cJSON *configuration_json(const struct configuration *configuration);
 
 // What pictures are compared with. Those but the first have no pixels if they are not known.
-enum truth_picture {
-    TRUTH_ALL,
-    TRUTH_DIRECT, // emission, background, and light of lamps and emitters reflected once
+enum reference_picture {
+    REFERENCE_IMAGE_ALL,
+    REFERENCE_IMAGE_DIRECT, // emission, background, and light of lights and emitters reflected once
     // Of one half of the samples. It differs from the whole as much as the whole does from what it
     // would be without noise: the halves are independent, so that half of their difference is both.
-    TRUTH_HALF,
-    TRUTH_HALF_DIRECT,
-    TRUTH_PICTURE_COUNT
+    REFERENCE_IMAGE_HALF,
+    REFERENCE_IMAGE_HALF_DIRECT,
+    REFERENCE_IMAGE_PICTURE_COUNT
 };
 
-struct truth {
-    struct picture pictures[TRUTH_PICTURE_COUNT];
+struct reference_image {
+    struct picture pictures[REFERENCE_IMAGE_PICTURE_COUNT];
     double noise; // standard error over mean luminance; NaN if that is not known
 };
 
@@ -67,13 +68,13 @@ enum accuracy_stage {
 // How far a run has come.
 struct accuracy_progress {
     enum accuracy_stage stage;
-    uint32_t samples;            // of the truth, a pixel; 0 if it was loaded
-    double noise;                // of the truth; not finite while it is not known
-    uint32_t done, rung_count;   // rungs
-    const struct rung *measured; // the newest, in this run; NULL for none
-    const struct rung *next;     // NULL at the end
-    double measured_s;           // what `measured` took
-    double left_s;               // of this stage; NaN while it is not known
+    uint32_t samples;                     // of the truth, a pixel; 0 if it was loaded
+    double noise;                         // of the truth; not finite while it is not known
+    uint32_t done, configuration_count;   // rungs
+    const struct configuration *measured; // the newest, in this run; NULL for none
+    const struct configuration *next;     // NULL at the end
+    double measured_s;                    // what `measured` took
+    double left_s;                        // of this stage; NaN while it is not known
 };
 
 // Who is told how a run goes on, and may end it. Zero: nobody.
@@ -82,12 +83,12 @@ struct accuracy_watch {
     void *user;
 };
 
-struct truth_params {
+struct reference_image_params {
     const struct cli_shot *shot;
     const char *path, *direct_path; // files; NULL to trace
     uint32_t samples;               // a pixel, if until_noise is 0
     double until_noise;             // trace until the noise is no more than this
-    double most_s;                  // or for so long; 0: however long that takes
+    double max_s;                   // or for so long; 0: however long that takes
     const char *folder;             // where a traced picture is kept, and found again, or NULL
     const struct cJSON *identity;   // says what scene and view is traced
     bool low_priority;              // gives way to all others
@@ -96,13 +97,14 @@ struct truth_params {
 
 // Loads or traces the truth. Tracing takes all processors. False with a message, such as that a
 // file is of another size, or that the watch ended it; then nothing needs finishing.
-bool truth_get(const struct truth_params *params, struct truth *out_truth, struct error *out_error);
-void truth_finish(struct truth *truth);
+bool reference_image_get(const struct reference_image_params *params,
+                         struct reference_image *out_reference, struct error *out_error);
+void reference_image_finish(struct reference_image *reference_image);
 
 // What all rungs of one run share.
 struct accuracy {
     struct cli_shot shot; // its settings and camera are those that rungs start from
-    struct truth truth;
+    struct reference_image reference_image;
     bool *self_lit; // pixels near those that show emission or background: left out where indirect
                     // light is judged alone, since their edges outshine it
     struct display_params display;
@@ -119,8 +121,8 @@ bool accuracy_judge(const struct accuracy *accuracy, const struct picture *pictu
 
 // Measures one rung and writes its pictures into the folder. The entry of results.json is the
 // caller's; NULL with a message.
-struct cJSON *accuracy_measure(const struct accuracy *accuracy, const struct rung *rung,
-                               struct error *out_error);
+struct cJSON *accuracy_measure(const struct accuracy *accuracy,
+                               const struct configuration *configuration, struct error *out_error);
 
 // The view of the shot, and the scene: what it was loaded from and, as KEY=VALUE, how it was
 // edited.
@@ -145,7 +147,8 @@ struct cJSON *accuracy_setup(const struct accuracy *accuracy, const char *refere
 struct cJSON *results_open(const char *folder, struct cJSON *setup, uint32_t *out_kept);
 
 // The rung's entry, or NULL.
-const struct cJSON *results_find(const struct cJSON *results, const struct rung *rung);
+const struct cJSON *results_find(const struct cJSON *results,
+                                 const struct configuration *configuration);
 
 // Adds an entry (taken over) in the place of one of the same name, and marks the Pareto front of
 // each metric anew: rungs than which none is both faster and less wrong.
@@ -159,8 +162,8 @@ bool results_write_report(const struct cJSON *results, const char *folder, struc
 
 struct accuracy_run {
     struct accuracy *accuracy; // its shot, folder, frames and edits; the rest is filled meanwhile
-    const struct truth_params *truth;
-    const struct ladder *ladder;
+    const struct reference_image_params *reference_image;
+    const struct sweep *sweep;
     bool with_report; // beside results.json
     struct accuracy_watch watch;
 };

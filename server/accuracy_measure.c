@@ -16,9 +16,9 @@
 #define STRIP_GAP      4u
 
 // What is gathered about one rung.
-struct rung_work {
+struct configuration_work {
     const struct accuracy *accuracy;
-    const struct rung *rung;
+    const struct configuration *configuration;
     struct frame_params params;
     struct view *view;
     struct picture cold, converged, direct; // of the truth's size
@@ -64,18 +64,19 @@ static void resample(const struct picture *source, struct picture *target)
 }
 
 // Pixels as a picture of the truth's size.
-static bool take_picture(const struct rung_work *work, const struct frame_pixels *pixels,
+static bool take_picture(const struct configuration_work *work, const struct frame_pixels *pixels,
                          struct picture *out_picture)
 {
-    const struct picture *truth = &work->accuracy->truth.pictures[TRUTH_ALL];
+    const struct picture *reference_image =
+        &work->accuracy->reference_image.pictures[REFERENCE_IMAGE_ALL];
     struct picture picture;
     if (!cli_take_picture(pixels, &picture))
         return false;
-    if (picture.width == truth->width && picture.height == truth->height) {
+    if (picture.width == reference_image->width && picture.height == reference_image->height) {
         *out_picture = picture;
         return true;
     }
-    bool done = picture_init(out_picture, truth->width, truth->height);
+    bool done = picture_init(out_picture, reference_image->width, reference_image->height);
     if (done)
         resample(&picture, out_picture);
     picture_finish(&picture);
@@ -91,7 +92,7 @@ static double sum(const struct cli_samples *samples)
 }
 
 // Frames of a moving camera: time, time per pass, memory. Compiles the shaders, too.
-static bool measure_frames(struct rung_work *work, struct error *out_error)
+static bool measure_frames(struct configuration_work *work, struct error *out_error)
 {
     const struct cli_shot *shot = &work->accuracy->shot;
     struct bench_run run = {.renderer = shot->renderer,
@@ -128,7 +129,7 @@ static bool forget_light(const struct accuracy *accuracy, struct error *out_erro
 }
 
 // The first picture of a scene that has just been uploaded, and the one that is final.
-static bool draw_pictures(struct rung_work *work, struct error *out_error)
+static bool draw_pictures(struct configuration_work *work, struct error *out_error)
 {
     struct renderer *renderer = work->accuracy->shot.renderer;
     struct frame_pixels pixels;
@@ -139,44 +140,44 @@ static bool draw_pictures(struct rung_work *work, struct error *out_error)
     double cold_ms = pixels.frame_time_ms;
     bool done = take_picture(work, &pixels, &work->cold);
     renderer_view_release(renderer, work->view);
-    struct cli_still still = {.renderer = renderer,
-                              .view = work->view,
-                              .params = &work->params,
-                              .max_frames = CLI_MAX_STILL_FRAMES,
-                              .measurement = &measurement};
-    if (!done || !cli_render_still(&still, out_error)) {
+    struct cli_converged_render render = {.renderer = renderer,
+                                          .view = work->view,
+                                          .params = &work->params,
+                                          .max_frames = CLI_MAX_CONVERGING_FRAMES,
+                                          .measurement = &measurement};
+    if (!done || !cli_render_converged(&render, out_error)) {
         cli_measurement_finish(&measurement);
         return done || error_set(out_error, "out of memory");
     }
-    done = take_picture(work, &still.pixels, &work->converged);
+    done = take_picture(work, &render.pixels, &work->converged);
     renderer_view_release(renderer, work->view);
     cJSON *cold = cJSON_AddObjectToObject(work->entry, "cold");
     cJSON_AddNumberToObject(cold, "ms", rounded(cold_ms, 1e-3));
     cJSON *converged = cJSON_AddObjectToObject(work->entry, "converged");
     cJSON_AddNumberToObject(converged, "ms", rounded(cold_ms + sum(&measurement.frame_ms), 1e-3));
-    cJSON_AddNumberToObject(converged, "frames", 1 + still.frame_count);
-    cJSON_AddBoolToObject(converged, "settled", still.converged);
+    cJSON_AddNumberToObject(converged, "frames", 1 + render.frame_count);
+    cJSON_AddBoolToObject(converged, "settled", render.converged);
     cli_measurement_finish(&measurement);
     return done || error_set(out_error, "out of memory");
 }
 
 // Direct light alone, by the same settings.
-static bool draw_direct(struct rung_work *work, struct error *out_error)
+static bool draw_direct(struct configuration_work *work, struct error *out_error)
 {
     struct frame_params params = work->params;
-    struct cli_still still = {.renderer = work->accuracy->shot.renderer,
-                              .view = work->view,
-                              .params = &params,
-                              .max_frames = CLI_MAX_STILL_FRAMES};
+    struct cli_converged_render render = {.renderer = work->accuracy->shot.renderer,
+                                          .view = work->view,
+                                          .params = &params,
+                                          .max_frames = CLI_MAX_CONVERGING_FRAMES};
     params.debug_view = DEBUG_VIEW_DIRECT;
-    if (!cli_render_still(&still, out_error))
+    if (!cli_render_converged(&render, out_error))
         return false;
-    bool done = take_picture(work, &still.pixels, &work->direct);
-    renderer_view_release(still.renderer, still.view);
+    bool done = take_picture(work, &render.pixels, &work->direct);
+    renderer_view_release(render.renderer, render.view);
     return done || error_set(out_error, "out of memory");
 }
 
-static bool measure_edits(struct rung_work *work, struct error *out_error)
+static bool measure_edits(struct configuration_work *work, struct error *out_error)
 {
     const struct accuracy *accuracy = work->accuracy;
     struct edit_params params = {.renderer = accuracy->shot.renderer,
@@ -230,17 +231,18 @@ bool accuracy_judge(const struct accuracy *accuracy, const struct picture *pictu
                     const struct picture *direct, cJSON *object, float *flip_map,
                     struct error *out_error)
 {
-    const struct picture *truth = accuracy->truth.pictures;
+    const struct picture *reference_image = accuracy->reference_image.pictures;
     struct image_metrics metrics;
-    if (!image_metrics_compute(picture, &truth[TRUTH_ALL], &accuracy->display, &metrics, flip_map,
-                               out_error))
+    if (!image_metrics_compute(picture, &reference_image[REFERENCE_IMAGE_ALL], &accuracy->display,
+                               &metrics, flip_map, out_error))
         return false;
     add_metrics(object, "metrics", &metrics);
-    if (!truth[TRUTH_DIRECT].rgb)
+    if (!reference_image[REFERENCE_IMAGE_DIRECT].rgb)
         return true;
     struct picture ours = {0}, wanted = {0};
     bool done = (take_indirect(accuracy, picture, direct, &ours) &&
-                 take_indirect(accuracy, &truth[TRUTH_ALL], &truth[TRUTH_DIRECT], &wanted)) ||
+                 take_indirect(accuracy, &reference_image[REFERENCE_IMAGE_ALL],
+                               &reference_image[REFERENCE_IMAGE_DIRECT], &wanted)) ||
                 error_set(out_error, "out of memory");
     done = done &&
            image_metrics_compute(&ours, &wanted, &accuracy->display, &metrics, NULL, out_error);
@@ -251,8 +253,8 @@ bool accuracy_judge(const struct accuracy *accuracy, const struct picture *pictu
     return done;
 }
 
-static bool judge_picture(struct rung_work *work, const char *state, const struct picture *picture,
-                          struct error *out_error)
+static bool judge_picture(struct configuration_work *work, const char *state,
+                          const struct picture *picture, struct error *out_error)
 {
     return accuracy_judge(work->accuracy, picture, &work->direct,
                           cJSON_GetObjectItemCaseSensitive(work->entry, state), work->flip_map,
@@ -260,29 +262,30 @@ static bool judge_picture(struct rung_work *work, const char *state, const struc
 }
 
 // Writes NAME-SUFFIX.png into the folder and notes it in the entry.
-static bool write_png(struct rung_work *work, cJSON *pictures, const char *suffix, uint32_t width,
-                      uint32_t height, const uint8_t *rgb, struct error *out_error)
+static bool write_png(struct configuration_work *work, cJSON *pictures, const char *suffix,
+                      uint32_t width, uint32_t height, const uint8_t *rgb, struct error *out_error)
 {
-    char file[RUNG_NAME_SIZE + 32], path[4096];
-    snprintf(file, sizeof(file), "%s-%s.png", work->rung->name, suffix);
+    char file[CONFIGURATION_NAME_SIZE + 32], path[4096];
+    snprintf(file, sizeof(file), "%s-%s.png", work->configuration->name, suffix);
     snprintf(path, sizeof(path), "%s/%s", work->accuracy->folder, file);
     cJSON_AddStringToObject(pictures, suffix, file);
     return cli_write_png(path, width, height, rgb, out_error);
 }
 
 // The converged picture, the heat map, and a strip of truth, cold, converged and heat map.
-static bool write_pictures(struct rung_work *work, struct error *out_error)
+static bool write_pictures(struct configuration_work *work, struct error *out_error)
 {
-    const struct picture *truth = &work->accuracy->truth.pictures[TRUTH_ALL];
-    uint32_t width = truth->width, height = truth->height;
+    const struct picture *reference_image =
+        &work->accuracy->reference_image.pictures[REFERENCE_IMAGE_ALL];
+    uint32_t width = reference_image->width, height = reference_image->height;
     uint32_t strip_width = STRIP_PICTURES * width + (STRIP_PICTURES - 1) * STRIP_GAP;
-    size_t bytes = 3 * picture_pixel_count(truth);
+    size_t bytes = 3 * picture_pixel_count(reference_image);
     uint8_t *parts = malloc(STRIP_PICTURES * bytes);
     uint8_t *strip = calloc(3 * (size_t)strip_width, height);
     bool done = parts && strip;
     if (done) {
         cJSON *pictures = cJSON_AddObjectToObject(work->entry, "pictures");
-        display_bytes(&work->accuracy->display, truth, parts);
+        display_bytes(&work->accuracy->display, reference_image, parts);
         display_bytes(&work->accuracy->display, &work->cold, parts + bytes);
         display_bytes(&work->accuracy->display, &work->converged, parts + 2 * bytes);
         heat_map_colors(work->flip_map, bytes / 3, parts + 3 * bytes);
@@ -302,18 +305,19 @@ static bool write_pictures(struct rung_work *work, struct error *out_error)
     return done;
 }
 
-static bool measure(struct rung_work *work, struct error *out_error)
+static bool measure(struct configuration_work *work, struct error *out_error)
 {
     const struct accuracy *accuracy = work->accuracy;
     work->params = accuracy->shot.params;
-    if (!rung_apply(work->rung, &work->params, out_error))
+    if (!configuration_apply(work->configuration, &work->params, out_error))
         return false;
     cJSON_AddStringToObject(work->entry, "method",
                             gi_method_names[work->params.settings.gi_method]);
-    work->params.width = scaled_edge(work->params.width, work->rung->scale);
-    work->params.height = scaled_edge(work->params.height, work->rung->scale);
+    work->params.width = scaled_edge(work->params.width, work->configuration->scale);
+    work->params.height = scaled_edge(work->params.height, work->configuration->scale);
     work->flip_map =
-        malloc(picture_pixel_count(&accuracy->truth.pictures[TRUTH_ALL]) * sizeof(float));
+        malloc(picture_pixel_count(&accuracy->reference_image.pictures[REFERENCE_IMAGE_ALL]) *
+               sizeof(float));
     if (!work->flip_map)
         return error_set(out_error, "out of memory");
     if (!forget_light(accuracy, out_error) || !measure_frames(work, out_error) ||
@@ -327,19 +331,21 @@ static bool measure(struct rung_work *work, struct error *out_error)
                 measure_edits(work, out_error);
     renderer_view_destroy(accuracy->shot.renderer, &work->view);
     // An edit that was cut short looks like one that cannot be measured.
-    done = done && (renderer_may_draw(accuracy->shot.renderer) ||
-                    error_set(out_error, "stopped while rung %s was measured", work->rung->name));
+    done = done &&
+           (renderer_admit_frame(accuracy->shot.renderer) ||
+            error_set(out_error, "stopped while rung %s was measured", work->configuration->name));
     return done && judge_picture(work, "cold", &work->cold, out_error) &&
            judge_picture(work, "converged", &work->converged, out_error) &&
            write_pictures(work, out_error);
 }
 
-cJSON *accuracy_measure(const struct accuracy *accuracy, const struct rung *rung,
+cJSON *accuracy_measure(const struct accuracy *accuracy, const struct configuration *configuration,
                         struct error *out_error)
 {
-    struct rung_work work = {.accuracy = accuracy, .rung = rung, .entry = cJSON_CreateObject()};
-    cJSON_AddStringToObject(work.entry, "name", rung->name);
-    cJSON_AddItemToObject(work.entry, "settings", rung_json(rung));
+    struct configuration_work work = {
+        .accuracy = accuracy, .configuration = configuration, .entry = cJSON_CreateObject()};
+    cJSON_AddStringToObject(work.entry, "name", configuration->name);
+    cJSON_AddItemToObject(work.entry, "settings", configuration_json(configuration));
     bool done = measure(&work, out_error);
     picture_finish(&work.cold);
     picture_finish(&work.converged);

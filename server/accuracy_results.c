@@ -67,11 +67,12 @@ static bool get_point(const cJSON *entry, enum image_metric metric, double *out_
 }
 
 // The smallest error of a final picture; infinite without any.
-static double smallest_error(const cJSON *rungs, const char *part, enum image_metric metric)
+static double smallest_error(const cJSON *configurations, const char *part,
+                             enum image_metric metric)
 {
     const cJSON *entry;
     double smallest = INFINITY;
-    cJSON_ArrayForEach(entry, rungs)
+    cJSON_ArrayForEach(entry, configurations)
     {
         const cJSON *value =
             get(get(get(entry, "converged"), part), image_metric_infos[metric].name);
@@ -99,7 +100,7 @@ static void judge_noise(cJSON *results)
             cJSON *item = cJSON_AddObjectToObject(part, image_metric_infos[i].name);
             cJSON_AddNumberToObject(item, "reference", error);
             cJSON_AddNumberToObject(item, "smallest", smallest);
-            cJSON_AddBoolToObject(item, "enough", error <= RESULTS_NOISE_SHARE * smallest);
+            cJSON_AddBoolToObject(item, "enough", error <= RESULTS_NOISE_FRACTION * smallest);
         }
     }
 }
@@ -130,39 +131,40 @@ cJSON *results_open(const char *folder, cJSON *setup, uint32_t *out_kept)
     // Through text and back, as the former set-up has gone.
     char *printed = cJSON_PrintUnformatted(setup);
     cJSON *parsed = printed ? cJSON_Parse(printed) : NULL;
-    cJSON *rungs = NULL;
+    cJSON *configurations = NULL;
     if (same_text(get(former, "setup"), parsed) && cJSON_IsArray(get(former, "rungs")))
-        rungs = cJSON_DetachItemFromObjectCaseSensitive(former, "rungs");
+        configurations = cJSON_DetachItemFromObjectCaseSensitive(former, "rungs");
     cJSON_free(printed);
     cJSON_Delete(parsed);
     cJSON_Delete(former);
-    cJSON_AddItemToObject(results, "rungs", rungs ? rungs : cJSON_CreateArray());
+    cJSON_AddItemToObject(results, "rungs", configurations ? configurations : cJSON_CreateArray());
     judge_noise(results);
     *out_kept = (uint32_t)cJSON_GetArraySize(get(results, "rungs"));
     return results;
 }
 
-const cJSON *results_find(const cJSON *results, const struct rung *rung)
+const cJSON *results_find(const cJSON *results, const struct configuration *configuration)
 {
-    cJSON *settings = rung_json(rung);
+    cJSON *settings = configuration_json(configuration);
     const cJSON *entry, *found = NULL;
     cJSON_ArrayForEach(entry, get(results, "rungs"))
     {
         const char *name = cJSON_GetStringValue(get(entry, "name"));
-        if (name && strcmp(name, rung->name) == 0 && same_text(get(entry, "settings"), settings))
+        if (name && strcmp(name, configuration->name) == 0 &&
+            same_text(get(entry, "settings"), settings))
             found = entry;
     }
     cJSON_Delete(settings);
     return found;
 }
 
-static bool is_on_front(const cJSON *rungs, const cJSON *entry, enum image_metric metric)
+static bool is_on_front(const cJSON *configurations, const cJSON *entry, enum image_metric metric)
 {
     const cJSON *other;
     double ms, error, other_ms, other_error;
     if (!get_point(entry, metric, &ms, &error))
         return false;
-    cJSON_ArrayForEach(other, rungs)
+    cJSON_ArrayForEach(other, configurations)
     {
         if (!get_point(other, metric, &other_ms, &other_error))
             continue;
@@ -172,14 +174,14 @@ static bool is_on_front(const cJSON *rungs, const cJSON *entry, enum image_metri
     return true;
 }
 
-static void mark_front(cJSON *rungs)
+static void mark_front(cJSON *configurations)
 {
     cJSON *entry;
-    cJSON_ArrayForEach(entry, rungs)
+    cJSON_ArrayForEach(entry, configurations)
     {
         cJSON *front = cJSON_CreateArray();
         for (int i = 0; i < METRIC_NOT_FINITE; i++)
-            if (is_on_front(rungs, entry, (enum image_metric)i))
+            if (is_on_front(configurations, entry, (enum image_metric)i))
                 cJSON_AddItemToArray(front, cJSON_CreateString(image_metric_infos[i].name));
         cJSON_DeleteItemFromObjectCaseSensitive(entry, "pareto");
         cJSON_AddItemToObject(entry, "pareto", front);
@@ -188,15 +190,16 @@ static void mark_front(cJSON *rungs)
 
 void results_add(cJSON *results, cJSON *entry)
 {
-    cJSON *rungs = cJSON_GetObjectItemCaseSensitive(results, "rungs");
+    cJSON *configurations = cJSON_GetObjectItemCaseSensitive(results, "rungs");
     const char *name = cJSON_GetStringValue(get(entry, "name"));
-    for (int i = cJSON_GetArraySize(rungs) - 1; i >= 0; i--) {
-        const char *other = cJSON_GetStringValue(get(cJSON_GetArrayItem(rungs, i), "name"));
+    for (int i = cJSON_GetArraySize(configurations) - 1; i >= 0; i--) {
+        const char *other =
+            cJSON_GetStringValue(get(cJSON_GetArrayItem(configurations, i), "name"));
         if (other && name && strcmp(other, name) == 0)
-            cJSON_DeleteItemFromArray(rungs, i);
+            cJSON_DeleteItemFromArray(configurations, i);
     }
-    cJSON_AddItemToArray(rungs, entry);
-    mark_front(rungs);
+    cJSON_AddItemToArray(configurations, entry);
+    mark_front(configurations);
     judge_noise(results);
 }
 

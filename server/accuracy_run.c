@@ -12,14 +12,16 @@
 
 static bool write_reference_png(const struct accuracy *accuracy, struct error *out_error)
 {
-    const struct picture *truth = &accuracy->truth.pictures[TRUTH_ALL];
+    const struct picture *reference_image =
+        &accuracy->reference_image.pictures[REFERENCE_IMAGE_ALL];
     char path[4096];
-    uint8_t *rgb = malloc(3 * picture_pixel_count(truth));
+    uint8_t *rgb = malloc(3 * picture_pixel_count(reference_image));
     if (!rgb)
         return error_set(out_error, "out of memory");
-    display_bytes(&accuracy->display, truth, rgb);
+    display_bytes(&accuracy->display, reference_image, rgb);
     snprintf(path, sizeof(path), "%s/reference.png", accuracy->folder);
-    bool done = cli_write_png(path, truth->width, truth->height, rgb, out_error);
+    bool done =
+        cli_write_png(path, reference_image->width, reference_image->height, rgb, out_error);
     free(rgb);
     return done;
 }
@@ -57,7 +59,8 @@ static void choose_display(struct accuracy *accuracy)
     const struct render_settings *settings = &accuracy->shot.params.settings;
     float exposure = exp2f(settings->exposure_ev);
     if (settings->exposure_mode == EXPOSURE_AUTOMATIC)
-        exposure *= display_automatic_exposure(&accuracy->truth.pictures[TRUTH_ALL]);
+        exposure *=
+            display_automatic_exposure(&accuracy->reference_image.pictures[REFERENCE_IMAGE_ALL]);
     accuracy->display = (struct display_params){
         .exposure = exposure, .tonemap = settings->tonemap, .gamma = settings->gamma};
 }
@@ -68,27 +71,27 @@ struct climb {
     const cJSON *results;
     double started_ms;
     uint32_t measured_count;
-    const struct rung *measured; // newest
+    const struct configuration *measured; // newest
     double measured_s;
 };
 
 static bool tell(const struct climb *climb)
 {
     const struct accuracy_watch *watch = &climb->run->watch;
-    const struct ladder *ladder = climb->run->ladder;
+    const struct sweep *sweep = climb->run->sweep;
     struct accuracy_progress progress = {.stage = ACCURACY_MEASURING,
-                                         .rung_count = ladder->rung_count,
+                                         .configuration_count = sweep->configuration_count,
                                          .measured = climb->measured,
                                          .measured_s = climb->measured_s,
                                          .left_s = NAN};
-    for (uint32_t i = 0; i < ladder->rung_count; i++)
-        if (results_find(climb->results, &ladder->rungs[i]))
+    for (uint32_t i = 0; i < sweep->configuration_count; i++)
+        if (results_find(climb->results, &sweep->configurations[i]))
             progress.done++;
         else if (!progress.next)
-            progress.next = &ladder->rungs[i];
+            progress.next = &sweep->configurations[i];
     if (climb->measured_count > 0)
         progress.left_s = 1e-3 * (clock_now_ms() - climb->started_ms) / climb->measured_count *
-                          (progress.rung_count - progress.done);
+                          (progress.configuration_count - progress.done);
     return !watch->tell || watch->tell(watch->user, &progress);
 }
 
@@ -100,29 +103,31 @@ static bool write_results(const struct climb *climb, struct error *out_error)
 }
 
 // Measures a rung and writes everything anew.
-static bool measure_rung(struct climb *climb, const struct rung *rung, cJSON *results,
-                         struct error *out_error)
+static bool measure_configuration(struct climb *climb, const struct configuration *configuration,
+                                  cJSON *results, struct error *out_error)
 {
     double started_ms = clock_now_ms();
-    cJSON *entry = accuracy_measure(climb->run->accuracy, rung, out_error);
+    cJSON *entry = accuracy_measure(climb->run->accuracy, configuration, out_error);
     if (!entry)
         return false;
     results_add(results, entry);
-    climb->measured = rung;
+    climb->measured = configuration;
     climb->measured_s = 1e-3 * (clock_now_ms() - started_ms);
     climb->measured_count++;
     return write_results(climb, out_error) &&
-           (tell(climb) || error_set(out_error, "stopped after rung %s", rung->name));
+           (tell(climb) || error_set(out_error, "stopped after rung %s", configuration->name));
 }
 
 // Measures the rungs that are not there yet.
-static bool measure_rungs(const struct accuracy_run *run, cJSON *results, struct error *out_error)
+static bool measure_configurations(const struct accuracy_run *run, cJSON *results,
+                                   struct error *out_error)
 {
     struct climb climb = {.run = run, .results = results, .started_ms = clock_now_ms()};
     bool done = tell(&climb) || error_set(out_error, "stopped before the first rung");
-    for (uint32_t i = 0; i < run->ladder->rung_count && done; i++)
-        if (!results_find(results, &run->ladder->rungs[i]))
-            done = measure_rung(&climb, &run->ladder->rungs[i], results, out_error);
+    for (uint32_t i = 0; i < run->sweep->configuration_count && done; i++)
+        if (!results_find(results, &run->sweep->configurations[i]))
+            done =
+                measure_configuration(&climb, &run->sweep->configurations[i], results, out_error);
     // With nothing to measure, the report may still be an older program's.
     return done && (climb.measured_count > 0 || write_results(&climb, out_error));
 }
@@ -131,18 +136,19 @@ cJSON *accuracy_run(const struct accuracy_run *run, struct error *out_error)
 {
     struct accuracy *accuracy = run->accuracy;
     uint32_t kept;
-    if (!truth_get(run->truth, &accuracy->truth, out_error))
+    if (!reference_image_get(run->reference_image, &accuracy->reference_image, out_error))
         return NULL;
     choose_display(accuracy);
     bool done = find_self_lit(accuracy, out_error) && write_reference_png(accuracy, out_error);
-    cJSON *setup =
-        done ? accuracy_setup(accuracy, run->truth->path, run->truth->identity, out_error) : NULL;
+    cJSON *setup = done ? accuracy_setup(accuracy, run->reference_image->path,
+                                         run->reference_image->identity, out_error)
+                        : NULL;
     cJSON *results = setup ? results_open(accuracy->folder, setup, &kept) : NULL;
-    if (results && !measure_rungs(run, results, out_error)) {
+    if (results && !measure_configurations(run, results, out_error)) {
         cJSON_Delete(results);
         results = NULL;
     }
-    truth_finish(&accuracy->truth);
+    reference_image_finish(&accuracy->reference_image);
     free(accuracy->self_lit);
     accuracy->self_lit = NULL;
     return results;

@@ -101,7 +101,7 @@ static bool goes_on(const struct accuracy_service *service)
 }
 
 // Waits until no client waits for a frame.
-static bool may_draw(void *user)
+static bool admit_frame(void *user)
 {
     struct accuracy_service *service = user;
     pthread_mutex_lock(&service->mutex);
@@ -113,7 +113,7 @@ static bool may_draw(void *user)
 }
 
 // The same within a frame, which is drawn to its end.
-static void give_way(void *user)
+static void yield(void *user)
 {
     struct accuracy_service *service = user;
     pthread_mutex_lock(&service->mutex);
@@ -129,8 +129,8 @@ static bool tell(void *user, const struct accuracy_progress *progress)
     struct accuracy_session *session = service->running;
     if (progress->stage == ACCURACY_MEASURING) {
         session->has_reference = true;
-        session->rungs_done = progress->done;
-        session->state = ACCURACY_RUNGS;
+        session->configurations_done = progress->done;
+        session->state = ACCURACY_CONFIGURATIONS;
     } else {
         session->samples = progress->samples;
         session->noise = progress->noise;
@@ -150,8 +150,8 @@ static bool open_renderer(struct accuracy_service *service, struct accuracy_sess
         renderer_destroy(&service->renderer);
     if (!service->renderer)
         service->renderer = renderer_create(&(struct renderer_params){.gpu = service->params.gpu,
-                                                                      .may_draw = may_draw,
-                                                                      .give_way = give_way,
+                                                                      .admit_frame = admit_frame,
+                                                                      .yield = yield,
                                                                       .user = service},
                                             out_error);
     return service->renderer && renderer_set_scene(service->renderer, session->scene, out_error);
@@ -172,16 +172,17 @@ static bool measure(struct accuracy_service *service, struct accuracy_session *s
     static const struct cli_sets no_sets;
     cJSON *identity = accuracy_identity(session->source, &no_sets, &accuracy.shot);
     cJSON_AddNumberToObject(identity, "revision", (double)session->revision);
-    struct truth_params truth = {.shot = &accuracy.shot,
-                                 .until_noise = session->until_noise,
-                                 .most_s = session->most_s,
-                                 .identity = identity,
-                                 .low_priority = true,
-                                 .watch = watch};
-    cJSON *results = accuracy_run(
-        &(struct accuracy_run){
-            .accuracy = &accuracy, .truth = &truth, .ladder = &session->ladder, .watch = watch},
-        out_error);
+    struct reference_image_params reference_image = {.shot = &accuracy.shot,
+                                                     .until_noise = session->until_noise,
+                                                     .max_s = session->max_s,
+                                                     .identity = identity,
+                                                     .low_priority = true,
+                                                     .watch = watch};
+    cJSON *results = accuracy_run(&(struct accuracy_run){.accuracy = &accuracy,
+                                                         .reference_image = &reference_image,
+                                                         .sweep = &session->sweep,
+                                                         .watch = watch},
+                                  out_error);
     bool done = results != NULL;
     cJSON_Delete(results);
     cJSON_Delete(identity);
@@ -196,7 +197,7 @@ static void run_session(struct accuracy_service *service, struct accuracy_sessio
     struct error error = {""};
     log_write(LOG_INFO, "accuracy_started client=%u measurement=%s width=%u height=%u rungs=%u",
               session->client_id, session->id, session->params.width, session->params.height,
-              session->ladder.rung_count);
+              session->sweep.configuration_count);
     post(service, session, ACCURACY_REFERENCE, NULL, NULL);
     bool done = measure(service, session, &error);
     pthread_mutex_lock(&service->mutex);
@@ -311,9 +312,10 @@ bool accuracy_service_prepare(struct accuracy_service *service,
         return error_set(out_error, "no thread for measuring can be started");
     }
     service->started = true;
-    *out_ticket = (struct accuracy_ticket){.rung_count = session->ladder.rung_count,
-                                           .width = session->params.width,
-                                           .height = session->params.height};
+    *out_ticket =
+        (struct accuracy_ticket){.configuration_count = session->sweep.configuration_count,
+                                 .width = session->params.width,
+                                 .height = session->params.height};
     memcpy(out_ticket->id, session->id, sizeof(out_ticket->id));
     pthread_mutex_lock(&service->mutex);
     if (service->stop) {
@@ -381,17 +383,17 @@ void accuracy_service_set_idle(struct accuracy_service *service, bool idle)
     pthread_mutex_unlock(&service->mutex);
 }
 
-static void list_rungs(const struct ladder *ladder, char *out, size_t size)
+static void list_configurations(const struct sweep *sweep, char *out, size_t size)
 {
     out[0] = '\0';
-    for (size_t i = 0, used = 0; i < ladder->rung_count && used < size; i++)
-        used +=
-            (size_t)snprintf(out + used, size - used, "%s%s", i ? ", " : "", ladder->rungs[i].name);
+    for (size_t i = 0, used = 0; i < sweep->configuration_count && used < size; i++)
+        used += (size_t)snprintf(out + used, size - used, "%s%s", i ? ", " : "",
+                                 sweep->configurations[i].name);
 }
 
-bool accuracy_service_get_rung(struct accuracy_service *service, uint32_t client_id,
-                               const char *name, struct frame_params *out_params, double *out_scale,
-                               struct error *out_error)
+bool accuracy_service_get_configuration(struct accuracy_service *service, uint32_t client_id,
+                                        const char *name, struct frame_params *out_params,
+                                        double *out_scale, struct error *out_error)
 {
     // Ladder and params never change, and sessions go on this thread or after being abandoned.
     pthread_mutex_lock(&service->mutex);
@@ -400,18 +402,18 @@ bool accuracy_service_get_rung(struct accuracy_service *service, uint32_t client
     if (!session)
         return error_set(out_error, "there is no rung \"%.60s\": nothing has been measured", name);
     char list[384];
-    for (uint32_t i = 0; i < session->ladder.rung_count; i++) {
-        const struct rung *rung = &session->ladder.rungs[i];
-        if (strcmp(rung->name, name) != 0)
+    for (uint32_t i = 0; i < session->sweep.configuration_count; i++) {
+        const struct configuration *configuration = &session->sweep.configurations[i];
+        if (strcmp(configuration->name, name) != 0)
             continue;
         struct frame_params params = session->params;
-        if (!rung_apply(rung, &params, out_error))
+        if (!configuration_apply(configuration, &params, out_error))
             return false;
         *out_params = params;
-        *out_scale = rung->scale;
+        *out_scale = configuration->scale;
         return true;
     }
-    list_rungs(&session->ladder, list, sizeof(list));
+    list_configurations(&session->sweep, list, sizeof(list));
     return error_set(out_error, "there is no rung \"%.60s\"; measured are %s", name, list);
 }
 

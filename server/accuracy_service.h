@@ -18,7 +18,7 @@
 // Views are measured at no more pixels than this, whatever their size.
 #define ACCURACY_MAX_PIXELS (640u * 360u)
 
-#define ACCURACY_LIVE_RUNG "live" // the client's own settings and quality
+#define ACCURACY_LIVE_CONFIGURATION "live" // the client's own settings and quality
 
 struct accuracy_service;
 
@@ -44,13 +44,13 @@ struct accuracy_request {
     const char *source;         // of the document, as clients know it
     uint64_t revision;          // of the document
     struct frame_params params; // the client's view: camera, size, quality and settings
-    const char *ladder;         // "quick" or "full"
-    double until_noise, most_s; // of the reference: see struct truth_params
+    const char *sweep;          // "quick" or "full"
+    double until_noise, max_s;  // of the reference: see struct reference_image_params
 };
 
 struct accuracy_ticket {
     char id[ACCURACY_ID_SIZE];
-    uint32_t rung_count;
+    uint32_t configuration_count;
     uint32_t width, height; // measured
 };
 
@@ -73,9 +73,9 @@ void accuracy_service_set_idle(struct accuracy_service *service, bool idle);
 
 // How a rung of the client's newest measurement is drawn: `params` takes its quality and settings,
 // those as they were measured. False with a message that lists the rungs there are.
-bool accuracy_service_get_rung(struct accuracy_service *service, uint32_t client_id,
-                               const char *name, struct frame_params *out_params, double *out_scale,
-                               struct error *out_error);
+bool accuracy_service_get_configuration(struct accuracy_service *service, uint32_t client_id,
+                                        const char *name, struct frame_params *out_params,
+                                        double *out_scale, struct error *out_error);
 
 // The file that answers GET /accuracy/ID/NAME; false if there is none (yet). Any thread.
 bool accuracy_service_find_file(struct accuracy_service *service, const char *url, char *out_path,

@@ -36,16 +36,16 @@ static void choose_size(struct frame_params *params)
     params->height = (uint32_t)floor(params->height * scale);
 }
 
-static bool fill_ladder(struct accuracy_session *session, const char *name, struct error *out_error)
+static bool fill_sweep(struct accuracy_session *session, const char *name, struct error *out_error)
 {
-    struct ladder *ladder = &session->ladder;
-    if (!ladder_load(name, ladder, out_error))
+    struct sweep *sweep = &session->sweep;
+    if (!sweep_load(name, sweep, out_error))
         return false;
-    memmove(&ladder->rungs[1], &ladder->rungs[0],
-            (LADDER_MAX_RUNGS - 1) * sizeof(ladder->rungs[0]));
-    ladder->rungs[0] =
-        (struct rung){.name = ACCURACY_LIVE_RUNG, .quality = session->params.quality, .scale = 1.0};
-    ladder->rung_count += ladder->rung_count < LADDER_MAX_RUNGS;
+    memmove(&sweep->configurations[1], &sweep->configurations[0],
+            (SWEEP_MAX_CONFIGURATIONS - 1) * sizeof(sweep->configurations[0]));
+    sweep->configurations[0] = (struct configuration){
+        .name = ACCURACY_LIVE_CONFIGURATION, .quality = session->params.quality, .scale = 1.0};
+    sweep->configuration_count += sweep->configuration_count < SWEEP_MAX_CONFIGURATIONS;
     return true;
 }
 
@@ -75,22 +75,22 @@ struct accuracy_session *accuracy_session_create(const struct accuracy_request *
     session->revision = request->revision;
     session->params = request->params;
     session->until_noise = request->until_noise;
-    session->most_s = request->most_s;
+    session->max_s = request->max_s;
     session->noise = NAN;
     snprintf(session->source, sizeof(session->source), "%s", request->source);
     choose_size(&session->params);
     bool done = choose_id(session->id) || error_set(out_error, "the system gives no random number");
-    if (!done || !fill_ladder(session, request->ladder, out_error) ||
+    if (!done || !fill_sweep(session, request->sweep, out_error) ||
         !make_folder(session, out_error))
         accuracy_session_destroy(&session);
     return session;
 }
 
-static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *place)
+static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *walk)
 {
     (void)status;
     (void)kind;
-    (void)place;
+    (void)walk;
     // What is being written may be renamed meanwhile.
     return remove(path) == 0 || errno == ENOENT ? 0 : -1;
 }
@@ -123,7 +123,7 @@ cJSON *accuracy_session_progress(const struct accuracy_session *session, enum ac
 {
     static const char *const names[] = {
         [ACCURACY_PREPARED] = "queued",     [ACCURACY_QUEUED] = "queued",
-        [ACCURACY_REFERENCE] = "reference", [ACCURACY_RUNGS] = "rungs",
+        [ACCURACY_REFERENCE] = "reference", [ACCURACY_CONFIGURATIONS] = "rungs",
         [ACCURACY_DONE] = "done",           [ACCURACY_CANCELLED] = "cancelled",
         [ACCURACY_FAILED] = "failed"};
     cJSON *json = cJSON_CreateObject();
@@ -134,8 +134,8 @@ cJSON *accuracy_session_progress(const struct accuracy_session *session, enum ac
     cJSON_AddNumberToObject(json, "samples", session->samples);
     cJSON_AddNumberToObject(json, "noise", session->noise); // null unless finite
     cJSON_AddNumberToObject(json, "noise_wanted", session->until_noise);
-    cJSON_AddNumberToObject(json, "done", session->rungs_done);
-    cJSON_AddNumberToObject(json, "rung_count", session->ladder.rung_count);
+    cJSON_AddNumberToObject(json, "done", session->configurations_done);
+    cJSON_AddNumberToObject(json, "rung_count", session->sweep.configuration_count);
     cJSON_AddItemToObject(json, "rung",
                           progress && progress->next ? cJSON_CreateString(progress->next->name)
                                                      : cJSON_CreateNull());
@@ -146,14 +146,15 @@ cJSON *accuracy_session_progress(const struct accuracy_session *session, enum ac
 bool accuracy_session_has_file(const struct accuracy_session *session, const char *name)
 {
     static const char *const suffixes[] = {"converged", "error", "strip"};
-    char file[RUNG_NAME_SIZE + 32];
+    char file[CONFIGURATION_NAME_SIZE + 32];
     if (strcmp(name, "results.json") == 0)
-        return session->rungs_done > 0;
+        return session->configurations_done > 0;
     if (strcmp(name, "reference.png") == 0)
         return session->has_reference;
-    for (uint32_t i = 0; i < session->rungs_done; i++)
+    for (uint32_t i = 0; i < session->configurations_done; i++)
         for (size_t k = 0; k < sizeof(suffixes) / sizeof(suffixes[0]); k++) {
-            snprintf(file, sizeof(file), "%s-%s.png", session->ladder.rungs[i].name, suffixes[k]);
+            snprintf(file, sizeof(file), "%s-%s.png", session->sweep.configurations[i].name,
+                     suffixes[k]);
             if (strcmp(name, file) == 0)
                 return true;
         }

@@ -11,7 +11,7 @@ enum accuracy_state {
     ACCURACY_PREPARED, // not submitted yet
     ACCURACY_QUEUED,
     ACCURACY_REFERENCE,
-    ACCURACY_RUNGS,
+    ACCURACY_CONFIGURATIONS,
     ACCURACY_DONE,
     ACCURACY_CANCELLED,
     ACCURACY_FAILED,
@@ -23,18 +23,18 @@ struct accuracy_session {
     uint32_t client_id;
     char source[256];
     uint64_t revision;
-    struct ladder ladder;       // the live rung first
+    struct sweep sweep;         // the live rung first
     struct frame_params params; // of the measured size
-    double until_noise, most_s;
+    double until_noise, max_s;
     char folder[4096];
     struct scene *scene; // owned; the measuring thread's from the start on
 
     atomic_bool cancelled;
     // Under the service's mutex.
     enum accuracy_state state;
-    bool abandoned;      // replaced, or its client has gone: nobody may see it any more
-    bool has_reference;  // reference.png is there
-    uint32_t rungs_done; // the first so many of the ladder are in results.json
+    bool abandoned;               // replaced, or its client has gone: nobody may see it any more
+    bool has_reference;           // reference.png is there
+    uint32_t configurations_done; // the first so many of the ladder are in results.json
     struct accuracy_session *next;
 
     // The measuring thread's.

@@ -40,9 +40,9 @@ static uint64_t hash_path(uint64_t hash, const char *path)
 // nftw() has no argument for its callback, and visits in no order: sums do not depend on it.
 static uint64_t shader_hash;
 
-static int add_shader(const char *path, const struct stat *status, int kind, struct FTW *place)
+static int add_shader(const char *path, const struct stat *status, int kind, struct FTW *walk)
 {
-    (void)place;
+    (void)walk;
     if (kind == FTW_F)
         shader_hash += hash_file(HASH_START, path, status);
     return 0;
@@ -120,15 +120,15 @@ cJSON *accuracy_quality_table(void)
 }
 
 // The truth's own error, by every metric.
-static cJSON *truth_error(const struct accuracy *accuracy, struct error *out_error)
+static cJSON *reference_error(const struct accuracy *accuracy, struct error *out_error)
 {
-    const struct picture *pictures = accuracy->truth.pictures;
-    if (!pictures[TRUTH_HALF].rgb)
+    const struct picture *pictures = accuracy->reference_image.pictures;
+    if (!pictures[REFERENCE_IMAGE_HALF].rgb)
         return cJSON_CreateNull();
     cJSON *json = cJSON_CreateObject();
-    float *map = malloc(picture_pixel_count(&pictures[TRUTH_ALL]) * sizeof(float));
-    bool done = map ? accuracy_judge(accuracy, &pictures[TRUTH_HALF], &pictures[TRUTH_HALF_DIRECT],
-                                     json, map, out_error)
+    float *map = malloc(picture_pixel_count(&pictures[REFERENCE_IMAGE_ALL]) * sizeof(float));
+    bool done = map ? accuracy_judge(accuracy, &pictures[REFERENCE_IMAGE_HALF],
+                                     &pictures[REFERENCE_IMAGE_HALF_DIRECT], json, map, out_error)
                     : error_set(out_error, "out of memory");
     free(map);
     if (done)
@@ -141,8 +141,9 @@ static cJSON *truth_error(const struct accuracy *accuracy, struct error *out_err
 cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_path,
                       const cJSON *identity, struct error *out_error)
 {
-    const struct picture *truth = &accuracy->truth.pictures[TRUTH_ALL];
-    cJSON *own_error = truth_error(accuracy, out_error);
+    const struct picture *reference_image =
+        &accuracy->reference_image.pictures[REFERENCE_IMAGE_ALL];
+    cJSON *own_error = reference_error(accuracy, out_error);
     if (!own_error)
         return NULL;
     cJSON *setup = cJSON_CreateObject();
@@ -161,10 +162,13 @@ cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_pat
     cJSON_AddStringToObject(setup, "tonemap", tonemap_names[accuracy->display.tonemap]);
     cJSON *reference = cJSON_AddObjectToObject(setup, "reference");
     cJSON_AddStringToObject(reference, "source", reference_path ? reference_path : "traced");
-    cJSON_AddNumberToObject(reference, "noise", accuracy->truth.noise); // null if not known
+    cJSON_AddNumberToObject(reference, "noise",
+                            accuracy->reference_image.noise); // null if not known
     add_hash(reference, "pixels",
-             hash_bytes(HASH_START, truth->rgb, 3 * sizeof(float) * picture_pixel_count(truth)));
+             hash_bytes(HASH_START, reference_image->rgb,
+                        3 * sizeof(float) * picture_pixel_count(reference_image)));
     cJSON_AddItemToObject(reference, "error", own_error);
-    cJSON_AddBoolToObject(reference, "direct", accuracy->truth.pictures[TRUTH_DIRECT].rgb != NULL);
+    cJSON_AddBoolToObject(reference, "direct",
+                          accuracy->reference_image.pictures[REFERENCE_IMAGE_DIRECT].rgb != NULL);
     return setup;
 }

@@ -14,7 +14,7 @@
 #define CLI_EXIT_OUTPUT 5
 
 // No picture needs as many: a bound against one that never comes to rest.
-#define CLI_MAX_STILL_FRAMES 2000u
+#define CLI_MAX_CONVERGING_FRAMES 2000u
 
 int cli_render(int argc, char **argv);
 int cli_info(int argc, char **argv);
@@ -74,7 +74,7 @@ bool cli_render_next_frame(struct renderer *renderer, struct view *view,
                            struct error *out_error);
 
 // Frames of one picture, drawn until it has converged.
-struct cli_still {
+struct cli_converged_render {
     struct renderer *renderer;
     struct view *view;
     const struct frame_params *params;
@@ -88,7 +88,7 @@ struct cli_still {
 };
 
 // On success the pixels must be released.
-bool cli_render_still(struct cli_still *still, struct error *out_error);
+bool cli_render_converged(struct cli_converged_render *render, struct error *out_error);
 
 // Writes pixels by the file's extension: .pfm (FRAME_OUTPUT_LINEAR), .png or .jpg
 // (FRAME_OUTPUT_RGBA8).

@@ -50,7 +50,7 @@ static const char usage[] =
 
 struct accuracy_options {
     struct cli_shot_options shot;
-    const char *out, *ladder, *reference, *reference_direct;
+    const char *out, *sweep, *reference, *reference_direct;
     uint32_t spp, frames, edits;
     double until_noise;
 };
@@ -60,7 +60,7 @@ struct teller {
     double told_ms;
 };
 
-static void print_truth(struct teller *teller, const struct accuracy_progress *progress)
+static void print_reference(struct teller *teller, const struct accuracy_progress *progress)
 {
     double percent = 100.0 * progress->noise, now_ms = clock_now_ms();
     if (progress->stage == ACCURACY_TRACED && progress->samples > 0)
@@ -76,16 +76,16 @@ static void print_truth(struct teller *teller, const struct accuracy_progress *p
     }
 }
 
-static void print_rungs(const struct accuracy_progress *progress)
+static void print_configurations(const struct accuracy_progress *progress)
 {
     char bar[BAR_LENGTH + 1];
     double left_s = progress->left_s;
     for (uint32_t i = 0; i < BAR_LENGTH; i++)
-        bar[i] = i * progress->rung_count < progress->done * BAR_LENGTH ? '#' : '.';
+        bar[i] = i * progress->configuration_count < progress->done * BAR_LENGTH ? '#' : '.';
     bar[BAR_LENGTH] = '\0';
     if (progress->measured)
         fprintf(stderr, "voxcast: [%s] %u of %u, %s took %.1f s, about %.0f min %02.0f s left\n",
-                bar, progress->done, progress->rung_count, progress->measured->name,
+                bar, progress->done, progress->configuration_count, progress->measured->name,
                 progress->measured_s, floor(left_s / 60.0), floor(fmod(left_s, 60.0)));
     else if (progress->done > 0)
         fprintf(stderr, "voxcast: %u rungs of the same set-up are there already\n", progress->done);
@@ -94,9 +94,9 @@ static void print_rungs(const struct accuracy_progress *progress)
 static bool tell(void *user, const struct accuracy_progress *progress)
 {
     if (progress->stage == ACCURACY_MEASURING)
-        print_rungs(progress);
+        print_configurations(progress);
     else
-        print_truth(user, progress);
+        print_reference(user, progress);
     return true;
 }
 
@@ -124,7 +124,7 @@ static void warn_of_noise(const cJSON *results)
 }
 
 static bool run(const struct accuracy_options *options, struct accuracy *accuracy,
-                const struct ladder *ladder, struct error *out_error)
+                const struct sweep *sweep, struct error *out_error)
 {
     struct teller teller = {.told_ms = clock_now_ms()};
     struct accuracy_watch watch = {.tell = tell, .user = &teller};
@@ -132,8 +132,8 @@ static bool run(const struct accuracy_options *options, struct accuracy *accurac
         accuracy_identity(options->shot.source, &options->shot.settings.sets, &accuracy->shot);
     cJSON *results =
         accuracy_run(&(struct accuracy_run){.accuracy = accuracy,
-                                            .truth =
-                                                &(struct truth_params){
+                                            .reference_image =
+                                                &(struct reference_image_params){
                                                     .shot = &accuracy->shot,
                                                     .path = options->reference,
                                                     .direct_path = options->reference_direct,
@@ -143,7 +143,7 @@ static bool run(const struct accuracy_options *options, struct accuracy *accurac
                                                     .identity = identity,
                                                     .watch = watch,
                                                 },
-                                            .ladder = ladder,
+                                            .sweep = sweep,
                                             .with_report = true,
                                             .watch = watch},
                      out_error);
@@ -159,10 +159,10 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
 {
     struct cli_parser parser = {.command = "accuracy", .usage = usage, .max_arguments = 1};
     *options = (struct accuracy_options){
-        .shot.size = {640, 360}, .ladder = "quick", .frames = DEFAULT_FRAMES, .edits = 1};
+        .shot.size = {640, 360}, .sweep = "quick", .frames = DEFAULT_FRAMES, .edits = 1};
     cli_take_shot(&parser, &options->shot);
     cli_take_text(&parser, "out", &options->out);
-    cli_take_text(&parser, "ladder", &options->ladder);
+    cli_take_text(&parser, "ladder", &options->sweep);
     cli_take_text(&parser, "reference", &options->reference);
     cli_take_text(&parser, "reference-direct", &options->reference_direct);
     cli_take_count(&parser, "reference-spp", 1, 1u << 20, &options->spp);
@@ -195,13 +195,13 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
 }
 
 static int open_and_run(const struct accuracy_options *options, struct accuracy *accuracy,
-                        const struct ladder *ladder)
+                        const struct sweep *sweep)
 {
     struct error error = {""};
     int status = cli_shot_open(&options->shot, QUALITY_HIGH, &accuracy->shot);
     if (status != 0)
         return status;
-    if (!run(options, accuracy, ladder, &error))
+    if (!run(options, accuracy, sweep, &error))
         status = cli_fail(CLI_EXIT_RENDER, "%s", error.message);
     else if (renderer_gl_error_count(accuracy->shot.renderer) > 0)
         status = cli_fail(CLI_EXIT_RENDER, "the GL driver reported %llu errors",
@@ -219,15 +219,15 @@ int cli_accuracy(int argc, char **argv)
         return status;
     struct accuracy accuracy = {
         .folder = options.out, .frames = options.frames, .edits = options.edits};
-    struct ladder *ladder = malloc(sizeof(*ladder)); // too large for the stack
-    if (!ladder)
+    struct sweep *sweep = malloc(sizeof(*sweep)); // too large for the stack
+    if (!sweep)
         return cli_fail(CLI_EXIT_RENDER, "out of memory");
-    if (!ladder_load(options.ladder, ladder, &error))
+    if (!sweep_load(options.sweep, sweep, &error))
         status = cli_fail(CLI_EXIT_USAGE, "%s", error.message);
     else if (mkdir(options.out, 0777) != 0 && errno != EEXIST)
         status = cli_fail(CLI_EXIT_OUTPUT, "cannot make \"%s\": %s", options.out, strerror(errno));
     else
-        status = open_and_run(&options, &accuracy, ladder);
-    free(ladder);
+        status = open_and_run(&options, &accuracy, sweep);
+    free(sweep);
     return status;
 }

@@ -22,15 +22,15 @@ static void sway_camera(const struct view_camera *from, uint32_t frame, struct v
 static bool converge(const struct bench_run *run, struct view *view, struct bench_result *result,
                      struct error *out_error)
 {
-    struct cli_still still = {.renderer = run->renderer,
-                              .view = view,
-                              .params = &run->params,
-                              .max_frames = run->max_converge_frames};
+    struct cli_converged_render render = {.renderer = run->renderer,
+                                          .view = view,
+                                          .params = &run->params,
+                                          .max_frames = run->max_converge_frames};
     if (run->max_converge_frames == 0)
         return true;
-    if (!cli_render_still(&still, out_error))
+    if (!cli_render_converged(&render, out_error))
         return false;
-    result->converge_frames = still.frame_count;
+    result->converge_frames = render.frame_count;
     renderer_view_release(run->renderer, view);
     return true;
 }

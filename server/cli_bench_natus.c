@@ -15,7 +15,7 @@
 #define CONVERGE_FRAMES 100
 #define MAX_ROWS        32u
 #define COLUMN_WIDTH    10
-#define LAMP_RADIUS_M   0.1f
+#define LIGHT_RADIUS_M  0.1f
 
 static const char usage[] =
     "usage: voxcast bench natus [OPTIONS]\n"
@@ -53,7 +53,7 @@ static const struct natus_test {
     const char *name;
     enum gi_method method;
     bool ambient_occlusion;
-    bool emissive; // lit by the wall, else by the lamp
+    bool emissive; // lit by the wall, else by the light
     bool soft_shadows;
 } tests[] = {
     {1, "direct light", GI_METHOD_NONE, false, false, false},
@@ -120,13 +120,13 @@ static bool check_effects(const struct natus_test *test, const struct frame_stat
     return true;
 }
 
-// Soft shadows need lamps that have a size.
-static void give_lamps_a_size(struct scene *scene)
+// Soft shadows need lights that have a size.
+static void give_lights_a_size(struct scene *scene)
 {
     for (uint32_t i = 0; i < scene->light_count; i++) {
         struct scene_light light = scene->lights[i];
         if (light.radius_m == 0.0f) {
-            light.radius_m = LAMP_RADIUS_M;
+            light.radius_m = LIGHT_RADIUS_M;
             scene_set_light(scene, i, &light);
         }
     }
@@ -201,7 +201,7 @@ static bool run_scene(struct natus *natus, bool emissive, struct error *out_erro
         scene_load(emissive ? options->emissive_scene : options->scene, out_error);
     if (!scene)
         return false;
-    give_lamps_a_size(scene);
+    give_lights_a_size(scene);
     bool done = renderer_set_scene(natus->renderer, scene, out_error);
     for (size_t i = 0; i < TEST_COUNT && done; i++)
         if (tests[i].emissive == emissive)

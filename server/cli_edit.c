@@ -5,9 +5,9 @@
 
 #include "server/cli_bench.h"
 
-#define FIRST_SHARE   0.01
-#define ARRIVED_SHARE 0.95
-#define LEAST_CHANGE  1e-3 // of white; below it rounding would be measured
+#define FIRST_FRACTION   0.01
+#define ARRIVED_FRACTION 0.95
+#define MIN_CHANGE       1e-3 // of white; below it rounding would be measured
 
 const char *const edit_kind_names[EDIT_KIND_COUNT] = {"color", "intensity"};
 
@@ -92,17 +92,17 @@ static void apply_state(const struct edit_bench *bench, const struct edit_state 
 static bool draw_settled(struct edit_bench *bench, const struct frame_params *params,
                          struct frame_pixels *out_pixels, struct error *out_error)
 {
-    struct cli_still still = {.renderer = bench->params->renderer,
-                              .view = bench->view,
-                              .params = params,
-                              .max_frames = CLI_MAX_STILL_FRAMES};
-    if (!cli_render_still(&still, out_error))
+    struct cli_converged_render render = {.renderer = bench->params->renderer,
+                                          .view = bench->view,
+                                          .params = params,
+                                          .max_frames = CLI_MAX_CONVERGING_FRAMES};
+    if (!cli_render_converged(&render, out_error))
         return false;
-    *out_pixels = still.pixels;
-    if (still.converged)
+    *out_pixels = render.pixels;
+    if (render.converged)
         return true;
     renderer_view_release(bench->params->renderer, bench->view);
-    return error_set(out_error, "the picture has not settled after %u frames", still.frame_count);
+    return error_set(out_error, "the picture has not settled after %u frames", render.frame_count);
 }
 
 static bool draw_linear(struct edit_bench *bench, enum debug_view debug_view, float *out_rgb,
@@ -149,7 +149,7 @@ static bool draw_states(struct edit_bench *bench, struct error *out_error)
     bench->change = clipped_difference(bench, a->settled, b->settled);
     bench->indirect_change =
         indirect_difference(bench, a->settled, a->direct, b->settled, b->direct);
-    if (bench->change < LEAST_CHANGE)
+    if (bench->change < MIN_CHANGE)
         return error_set(out_error,
                          "the edit changes the picture by %.2g of white: too little to "
                          "measure; choose another light or view",
@@ -162,15 +162,15 @@ static void judge_frame(const struct edit_bench *bench, const struct edit_state 
                         const struct edit_moment *now, struct edit_run *run)
 {
     double left = clipped_difference(bench, bench->frame, to->settled) / bench->change;
-    if (1.0 - left >= FIRST_SHARE && run->stages[EDIT_FIRST].frames == 0)
+    if (1.0 - left >= FIRST_FRACTION && run->stages[EDIT_FIRST].frames == 0)
         run->stages[EDIT_FIRST] = *now;
-    if (1.0 - left < ARRIVED_SHARE)
+    if (1.0 - left < ARRIVED_FRACTION)
         run->stages[EDIT_ARRIVED] = (struct edit_moment){0};
     else if (run->stages[EDIT_ARRIVED].frames == 0)
         run->stages[EDIT_ARRIVED] = *now;
     double indirect_left =
         indirect_difference(bench, bench->frame, to->direct, to->settled, to->direct);
-    if (indirect_left > (1.0 - ARRIVED_SHARE) * bench->indirect_change)
+    if (indirect_left > (1.0 - ARRIVED_FRACTION) * bench->indirect_change)
         run->stages[EDIT_INDIRECT] = (struct edit_moment){0};
     else if (run->stages[EDIT_INDIRECT].frames == 0)
         run->stages[EDIT_INDIRECT] = *now;
@@ -184,7 +184,7 @@ static bool measure_edit(struct edit_bench *bench, const struct edit_state *to,
     struct renderer *renderer = bench->params->renderer;
     *out_run = (struct edit_run){0};
     apply_state(bench, to);
-    while (now.frames < CLI_MAX_STILL_FRAMES) {
+    while (now.frames < CLI_MAX_CONVERGING_FRAMES) {
         struct frame_pixels pixels;
         enum render_result result =
             renderer_view_draw(renderer, bench->view, &bench->frame_params, out_error);

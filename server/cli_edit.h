@@ -19,7 +19,7 @@ struct edit_params {
     struct view *view;         // to measure in; NULL for one of its own
     const struct frame_params *frame;
     enum edit_kind kind;
-    uint32_t light, material; // SCENE_NONE for both: the first lamp that shines, else material
+    uint32_t light, material; // SCENE_NONE for both: the first light that shines, else material
     uint32_t repetitions;     // edits measured
 };
 

@@ -30,45 +30,46 @@ bool cli_render_frame(struct renderer *renderer, struct view *view,
 }
 
 // Draws one frame more and keeps its pixels instead of the last one's.
-static enum render_result render_one_more(struct cli_still *still, struct error *out_error)
+static enum render_result render_one_more(struct cli_converged_render *render,
+                                          struct error *out_error)
 {
     enum render_result result =
-        renderer_view_draw(still->renderer, still->view, still->params, out_error);
+        renderer_view_draw(render->renderer, render->view, render->params, out_error);
     while (result == RENDER_PENDING) {
         usleep(PENDING_US);
-        result = renderer_view_draw(still->renderer, still->view, still->params, out_error);
+        result = renderer_view_draw(render->renderer, render->view, render->params, out_error);
     }
     if (result != RENDER_DRAWN)
         return result;
-    if (still->frame_count > 0)
-        renderer_view_release(still->renderer, still->view);
-    still->frame_count++;
-    if (!renderer_view_collect(still->renderer, still->view, true, &still->pixels)) {
-        still->frame_count = 0; // nothing is held
+    if (render->frame_count > 0)
+        renderer_view_release(render->renderer, render->view);
+    render->frame_count++;
+    if (!renderer_view_collect(render->renderer, render->view, true, &render->pixels)) {
+        render->frame_count = 0; // nothing is held
         error_set(out_error, "the GPU did not finish the frame");
         return RENDER_FAILED;
     }
     struct frame_statistics statistics;
-    renderer_view_get_statistics(still->renderer, still->view, &statistics);
-    if (still->measurement && !cli_measurement_add(still->measurement, &statistics)) {
+    renderer_view_get_statistics(render->renderer, render->view, &statistics);
+    if (render->measurement && !cli_measurement_add(render->measurement, &statistics)) {
         error_set(out_error, "out of memory");
         return RENDER_FAILED;
     }
     return RENDER_DRAWN;
 }
 
-bool cli_render_still(struct cli_still *still, struct error *out_error)
+bool cli_render_converged(struct cli_converged_render *render, struct error *out_error)
 {
-    still->frame_count = 0;
-    still->converged = false;
-    renderer_view_invalidate(still->view);
+    render->frame_count = 0;
+    render->converged = false;
+    renderer_view_invalidate(render->view);
     enum render_result result = RENDER_DRAWN;
-    while (result == RENDER_DRAWN && still->frame_count < still->max_frames)
-        result = render_one_more(still, out_error);
-    still->converged = result == RENDER_UNCHANGED;
+    while (result == RENDER_DRAWN && render->frame_count < render->max_frames)
+        result = render_one_more(render, out_error);
+    render->converged = result == RENDER_UNCHANGED;
     if (result == RENDER_DRAWN || result == RENDER_UNCHANGED)
         return true;
-    if (still->frame_count > 0)
-        renderer_view_release(still->renderer, still->view);
+    if (render->frame_count > 0)
+        renderer_view_release(render->renderer, render->view);
     return false;
 }

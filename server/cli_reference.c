@@ -54,21 +54,21 @@ static void add_samples(const struct cli_reference_options *options, struct refe
                         struct reference_progress *out_progress)
 {
     bool open_ended = options->time_s > 0.0 || options->noise > 0.0;
-    uint32_t most = options->samples ? options->samples
-                    : open_ended     ? REFERENCE_MAX_SAMPLES
-                                     : DEFAULT_SAMPLES;
+    uint32_t maximum = options->samples ? options->samples
+                       : open_ended     ? REFERENCE_MAX_SAMPLES
+                                        : DEFAULT_SAMPLES;
     double end_s = options->time_s > 0.0 ? 1e-3 * clock_now_ms() + options->time_s : INFINITY;
-    uint32_t target = options->noise > 0.0 ? (most < 16 ? most : 16) : most;
+    uint32_t target = options->noise > 0.0 ? (maximum < 16 ? maximum : 16) : maximum;
     for (;;) {
         reference_start(reference, target);
         bool reached = reference_wait(reference, end_s - 1e-3 * clock_now_ms());
         if (!reached)
             reference_stop(reference);
         reference_get_progress(reference, out_progress);
-        if (!reached || target == most || out_progress->noise < options->noise)
+        if (!reached || target == maximum || out_progress->noise < options->noise)
             return;
         double more = target * NOISE_STEP + 1.0;
-        target = more < most ? (uint32_t)more : most;
+        target = more < maximum ? (uint32_t)more : maximum;
     }
 }
 

@@ -113,24 +113,24 @@ struct render_job {
 };
 
 // Frames until the picture has converged; measured if `measurement` is there, written if `path` is.
-static int render_still(struct render_job *job, struct cli_measurement *measurement,
-                        const char *path)
+static int render_converged(struct render_job *job, struct cli_measurement *measurement,
+                            const char *path)
 {
     struct error error = {""};
-    struct cli_still still = {.renderer = job->renderer,
-                              .view = job->view,
-                              .params = job->params,
-                              .max_frames = CLI_MAX_STILL_FRAMES,
-                              .measurement = measurement};
-    if (!cli_render_still(&still, &error))
+    struct cli_converged_render render = {.renderer = job->renderer,
+                                          .view = job->view,
+                                          .params = job->params,
+                                          .max_frames = CLI_MAX_CONVERGING_FRAMES,
+                                          .measurement = measurement};
+    if (!cli_render_converged(&render, &error))
         return cli_fail(CLI_EXIT_RENDER, "%s", error.message);
-    job->convergence = still.pixels.convergence;
-    job->converged = still.converged;
-    if (!still.converged)
+    job->convergence = render.pixels.convergence;
+    job->converged = render.converged;
+    if (!render.converged)
         fprintf(stderr, "voxcast: warning: not converged after %u frames, but %.0f %% on the way\n",
-                still.frame_count, 100.0 * (double)still.pixels.convergence);
+                render.frame_count, 100.0 * (double)render.pixels.convergence);
     int status = 0;
-    if (path && !cli_write_picture(path, &still.pixels, &error))
+    if (path && !cli_write_picture(path, &render.pixels, &error))
         status = cli_fail(CLI_EXIT_OUTPUT, "%s", error.message);
     renderer_view_release(job->renderer, job->view);
     return status;
@@ -167,7 +167,7 @@ static int render_count(struct render_job *job)
     uint32_t count = options->frames + warm_up;
     int status = 0;
     if (options->converge_first) {
-        status = render_still(job, NULL, NULL);
+        status = render_converged(job, NULL, NULL);
         move_camera(&job->params->camera, options->move.xyz);
     }
     for (uint32_t i = 0; i < count && status == 0; i++) {
@@ -203,7 +203,7 @@ static int render_frames(const struct render_options *options, struct cli_shot *
     if (!job.view)
         return cli_fail(CLI_EXIT_RENDER, "out of memory");
     int status = options->frames > 0 ? render_count(&job)
-                                     : render_still(&job, &job.measurement, options->out);
+                                     : render_converged(&job, &job.measurement, options->out);
     if (status == 0 && options->stats)
         status = write_statistics(&job);
     cli_measurement_finish(&job.measurement);

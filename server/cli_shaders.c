@@ -82,7 +82,7 @@ int cli_shaders(int argc, char **argv)
     if (status != 0)
         return status;
     shot.renderer = renderer_create(
-        &(struct renderer_params){.gpu = options.gpu, .give_way = tell_step, .user = &progress},
+        &(struct renderer_params){.gpu = options.gpu, .yield = tell_step, .user = &progress},
         &error);
     bool fine = shot.renderer && renderer_set_scene(shot.renderer, shot.scene, &error) &&
                 draw_presets(&shot, &progress, &error);

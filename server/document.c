@@ -45,7 +45,7 @@ struct binding {
     {                                                                                              \
         GROUP_LIGHT, #field, offsetof(struct light_record, light.field)                            \
     }
-#define LIGHT_PLACE(field)                                                                         \
+#define LIGHT_POSITION(field)                                                                      \
     {                                                                                              \
         GROUP_LIGHT, #field, offsetof(struct light_record, field)                                  \
     }
@@ -89,8 +89,8 @@ static const struct binding bindings[] = {
     LIGHT(inner_cone_rad),
     LIGHT(outer_cone_rad),
     LIGHT(radius_m),
-    LIGHT_PLACE(position),
-    LIGHT_PLACE(direction),
+    LIGHT_POSITION(position),
+    LIGHT_POSITION(direction),
     MATERIAL(name),
     MATERIAL(shading),
     MATERIAL(alpha_mode),
@@ -157,7 +157,7 @@ static const struct binding bindings[] = {
     VIEW(debug_level),
     VIEW(debug_face),
     VIEW(paused),
-    VIEW(rung),
+    VIEW(configuration),
     CAMERA(eye),
     CAMERA(target),
     CAMERA(up),

@@ -22,7 +22,7 @@ struct view_options {
     uint32_t debug_level;
     enum voxel_face debug_face;
     bool paused;
-    char rung[PROTOCOL_MAX_NAME_BYTES + 1]; // of a measurement; "" for the shared settings
+    char configuration[PROTOCOL_MAX_NAME_BYTES + 1]; // of a measurement; "" for the shared settings
     struct view_camera camera;
 };
 

@@ -176,8 +176,8 @@ void frame_stream_collect_closed(struct frame_stream *stream)
 bool frame_stream_wants_frame(struct frame_stream *stream, uint32_t slot_index)
 {
     struct slot *slot = lock_slot(stream, slot_index);
-    uint32_t under_way = slot->in_work + slot->sent_count + (slot->pending ? 1 : 0);
-    bool wants = slot->state == SLOT_OPEN && under_way < FRAME_STREAM_MAX_UNACKNOWLEDGED;
+    uint32_t in_flight = slot->in_work + slot->sent_count + (slot->pending ? 1 : 0);
+    bool wants = slot->state == SLOT_OPEN && in_flight < FRAME_STREAM_MAX_UNACKNOWLEDGED;
     unlock(stream);
     return wants;
 }

@@ -2,12 +2,12 @@
 
 #include <math.h>
 
-#define FRAMES_TO_DROP  3u
-#define FRAMES_TO_CLIMB 8u
-#define FRAMES_TO_LEARN 3u
-#define CLIMB_SHARE     0.8  // of the target
-#define LEAST_RATIO     1.25 // so that a drop that brought little is not undone at once
-#define LOWER_ROW_SHARE 0.5f // of the way to the wanted picture
+#define FRAMES_TO_DROP     3u
+#define FRAMES_TO_CLIMB    8u
+#define FRAMES_TO_LEARN    3u
+#define CLIMB_FRACTION     0.8  // of the target
+#define MIN_RATIO          1.25 // so that a drop that brought little is not undone at once
+#define LOWER_ROW_FRACTION 0.5f // of the way to the wanted picture
 
 void quality_controller_move(struct quality_controller *controller, uint64_t now_us)
 {
@@ -16,7 +16,7 @@ void quality_controller_move(struct quality_controller *controller, uint64_t now
 
 bool quality_controller_is_moving(const struct quality_controller *controller, uint64_t now_us)
 {
-    return controller->moved_at_us > 0 && now_us < controller->moved_at_us + QUALITY_STILL_US;
+    return controller->moved_at_us > 0 && now_us < controller->moved_at_us + QUALITY_REST_US;
 }
 
 static enum quality lower(enum quality a, enum quality b)
@@ -37,7 +37,7 @@ uint64_t quality_controller_next_us(const struct quality_controller *controller,
 {
     if (quality_controller_choose(controller, request, now_us) == request->wanted)
         return QUALITY_NEVER;
-    return controller->moved_at_us + QUALITY_STILL_US;
+    return controller->moved_at_us + QUALITY_REST_US;
 }
 
 // The shortest time counts: a frame that compiles shaders or allocates says nothing.
@@ -66,10 +66,10 @@ static void take_draft(struct quality_controller *controller, double target_ms, 
             controller->draft_ms = frame_ms;
         controller->draft_count++;
         controller->interactive_ratio =
-            fmax(controller->interactive_ms / fmax(controller->draft_ms, 1e-3), LEAST_RATIO);
+            fmax(controller->interactive_ms / fmax(controller->draft_ms, 1e-3), MIN_RATIO);
         return;
     }
-    bool would_fit = frame_ms * controller->interactive_ratio < CLIMB_SHARE * target_ms;
+    bool would_fit = frame_ms * controller->interactive_ratio < CLIMB_FRACTION * target_ms;
     controller->under_count = would_fit ? controller->under_count + 1 : 0;
     if (controller->under_count >= FRAMES_TO_CLIMB)
         controller->draft = false;
@@ -91,5 +91,5 @@ void quality_controller_take_frame(struct quality_controller *controller,
 
 float quality_convergence(enum quality row, enum quality wanted, float convergence)
 {
-    return row < wanted ? LOWER_ROW_SHARE * convergence : convergence;
+    return row < wanted ? LOWER_ROW_FRACTION * convergence : convergence;
 }

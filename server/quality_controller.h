@@ -8,8 +8,8 @@
 
 #include "renderer/settings.h"
 
-#define QUALITY_STILL_US 200000u    // without a change for so long, a picture is still
-#define QUALITY_NEVER    UINT64_MAX // no moment at which to look again
+#define QUALITY_REST_US 200000u    // without a change for so long, a picture is still
+#define QUALITY_NEVER   UINT64_MAX // no moment at which to look again
 
 // What a view's user asks for.
 struct quality_request {

@@ -21,9 +21,9 @@ static bool prepare(struct render_thread *thread, const struct render_client *cl
                    .height = view->height,
                    .quality = view->quality,
                    .settings = render_resolve_settings(thread)},
-        .ladder = command_ladder_names[command->ladder],
+        .sweep = command_sweep_names[command->sweep],
         .until_noise = command->noise,
-        .most_s = command->seconds,
+        .max_s = command->seconds,
     };
     if (!request.scene)
         return error_set(out_error, "out of memory for a copy of the scene");
@@ -52,12 +52,12 @@ void render_run_accuracy_start(struct render_thread *thread, struct render_clien
     }
     cJSON *result = cJSON_CreateObject();
     cJSON_AddStringToObject(result, "measurement", ticket.id);
-    cJSON_AddNumberToObject(result, "rung_count", ticket.rung_count);
+    cJSON_AddNumberToObject(result, "rung_count", ticket.configuration_count);
     cJSON_AddNumberToObject(result, "width", ticket.width);
     cJSON_AddNumberToObject(result, "height", ticket.height);
     cJSON_AddNumberToObject(result, "epoch", (double)thread->epoch);
     cJSON_AddNumberToObject(result, "revision", (double)thread->revision);
-    render_clear_rung(thread, client);
+    render_clear_configuration(thread, client);
     render_reply(thread, command, result);
     accuracy_service_submit(thread->params.accuracy, client->client_id);
 }
@@ -68,8 +68,9 @@ void render_run_accuracy_cancel(struct render_thread *thread, const struct comma
     render_reply(thread, command, cJSON_CreateObject());
 }
 
-bool render_find_rung(struct render_thread *thread, const struct command *command,
-                      struct rung_override *out_rung, struct rpc_error *out_error)
+bool render_find_configuration(struct render_thread *thread, const struct command *command,
+                               struct configuration_override *out_configuration,
+                               struct rpc_error *out_error)
 {
     for (uint32_t i = 0; i < command->value_count; i++) {
         const struct parameter_value *value = &command->values[i];
@@ -78,19 +79,19 @@ bool render_find_rung(struct render_thread *thread, const struct command *comman
         double scale;
         if (strcmp(value->parameter->name, "rung") != 0 || !value->text[0])
             continue;
-        if (!accuracy_service_get_rung(thread->params.accuracy, command->client_id, value->text,
-                                       &params, &scale, &error))
+        if (!accuracy_service_get_configuration(thread->params.accuracy, command->client_id,
+                                                value->text, &params, &scale, &error))
             return rpc_error_field(out_error, "rung", NULL, "rung: %s", error.message);
-        *out_rung = (struct rung_override){
+        *out_configuration = (struct configuration_override){
             .quality = params.quality, .scale = scale, .settings = params.settings};
     }
     return true;
 }
 
-void render_clear_rung(struct render_thread *thread, struct render_client *client)
+void render_clear_configuration(struct render_thread *thread, struct render_client *client)
 {
-    if (!client->client_id || !client->options.rung[0])
+    if (!client->client_id || !client->options.configuration[0])
         return;
-    client->options.rung[0] = '\0';
+    client->options.configuration[0] = '\0';
     render_mark_dirty(thread, client);
 }

@@ -144,14 +144,14 @@ static void run_view_or_camera(struct render_thread *thread, struct render_clien
     struct document document = render_document(thread, client);
     enum parameter_group group = method_get_group(command->method);
     const struct view_options before = client->options;
-    struct rung_override rung = client->rung;
+    struct configuration_override configuration = client->configuration;
     struct rpc_error error;
-    if (!render_find_rung(thread, command, &rung, &error) ||
+    if (!render_find_configuration(thread, command, &configuration, &error) ||
         !document_set(&document, group, 0, command->values, command->value_count, &error)) {
         render_reply_error(thread, command, &error);
         return;
     }
-    client->rung = rung;
+    client->configuration = configuration;
     if (shows_other_things(&before, &client->options))
         render_mark_moving(thread, client);
     else

@@ -15,7 +15,7 @@
 #include "server/scene_loader.h"
 
 // What a rung puts in place of the shared settings, while view_options.rung names it.
-struct rung_override {
+struct configuration_override {
     enum quality quality;
     double scale; // of the picture's size
     struct render_settings settings;
@@ -27,7 +27,7 @@ struct render_client {
     char name[PROTOCOL_MAX_NAME_BYTES + 1];
     struct view *view;
     struct view_options options;
-    struct rung_override rung; // if options.rung is not ""
+    struct configuration_override configuration; // if options.rung is not ""
     uint64_t camera_revision;
     uint64_t edit_id;
     uint64_t frame_count;
@@ -143,11 +143,12 @@ void render_run_accuracy_cancel(struct render_thread *thread, const struct comma
 
 // Gets what the rung that a view.configure names puts in place, if it names one. False with an
 // error that lists the rungs there are.
-bool render_find_rung(struct render_thread *thread, const struct command *command,
-                      struct rung_override *out_rung, struct rpc_error *out_error);
+bool render_find_configuration(struct render_thread *thread, const struct command *command,
+                               struct configuration_override *out_configuration,
+                               struct rpc_error *out_error);
 
 // Back to the shared settings.
-void render_clear_rung(struct render_thread *thread, struct render_client *client);
+void render_clear_configuration(struct render_thread *thread, struct render_client *client);
 
 // render_statistics.c
 void render_send_statistics(struct render_thread *thread, uint32_t slot);

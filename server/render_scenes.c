@@ -147,7 +147,7 @@ static bool swap_scene(struct render_thread *thread, struct scene *scene, struct
     edit_log_clear(&thread->log);
     for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
         edit_history_clear(&thread->clients[i].history);
-        render_clear_rung(thread, &thread->clients[i]);
+        render_clear_configuration(thread, &thread->clients[i]);
     }
     if (thread->watch)
         file_watch_set_files(thread->watch, scene->source_files, scene->source_file_count);

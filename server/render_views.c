@@ -13,7 +13,7 @@
 #define PENDING_US 30000u
 
 // While one client's picture moves, frames that only make others' better take at most this share.
-#define REFINE_SHARE 8u
+#define REFINE_FRACTION 8u
 
 struct render_client *render_find_client(struct render_thread *thread, uint32_t client_id)
 {
@@ -118,8 +118,8 @@ void render_mark_moving(struct render_thread *thread, struct render_client *clie
 
 static struct quality_request request_of(const struct render_client *client)
 {
-    if (client->options.rung[0])
-        return (struct quality_request){.wanted = client->rung.quality};
+    if (client->options.configuration[0])
+        return (struct quality_request){.wanted = client->configuration.quality};
     return (struct quality_request){.wanted = client->options.quality,
                                     .adaptive = client->options.adaptive,
                                     .target_frame_ms = client->options.target_frame_ms};
@@ -153,7 +153,7 @@ static uint64_t refine_from_us(const struct render_thread *thread, uint64_t now)
         const struct render_client *client = &thread->clients[i];
         if (client->client_id && !client->options.paused &&
             quality_controller_is_moving(&client->quality, now))
-            return thread->refined_at_us + (REFINE_SHARE - 1) * thread->refine_us;
+            return thread->refined_at_us + (REFINE_FRACTION - 1) * thread->refine_us;
     }
     return 0;
 }
@@ -187,9 +187,9 @@ uint64_t render_idle_from_us(struct render_thread *thread)
             continue;
         if (client->drawing || wants_draw(thread, slot, now))
             return QUALITY_NEVER;
-        uint64_t still = client->quality.moved_at_us + QUALITY_STILL_US;
-        if (quality_controller_is_moving(&client->quality, now) && still > from)
-            from = still;
+        uint64_t rest_from_us = client->quality.moved_at_us + QUALITY_REST_US;
+        if (quality_controller_is_moving(&client->quality, now) && rest_from_us > from)
+            from = rest_from_us;
     }
     return from;
 }
@@ -244,16 +244,17 @@ struct render_settings render_resolve_settings(const struct render_thread *threa
 }
 
 // How the picture is shown stays as all others are.
-static void apply_rung(const struct rung_override *rung, struct frame_params *params)
+static void apply_configuration(const struct configuration_override *configuration,
+                                struct frame_params *params)
 {
-    struct render_settings settings = rung->settings;
+    struct render_settings settings = configuration->settings;
     settings.tonemap = params->settings.tonemap;
     settings.exposure_mode = params->settings.exposure_mode;
     settings.exposure_ev = params->settings.exposure_ev;
     settings.gamma = params->settings.gamma;
     params->settings = settings;
     params->own_voxels = true;
-    double scale = rung->scale;
+    double scale = configuration->scale;
     scale = fmin(scale, (double)VIEW_MAX_WIDTH / params->width);
     scale = fmin(scale, (double)VIEW_MAX_HEIGHT / params->height);
     params->width = (uint32_t)fmax(round(params->width * scale), VIEW_MIN_EDGE);
@@ -281,8 +282,8 @@ static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
         .settings = render_resolve_settings(thread),
         .user_id = client->frame_count + 1,
     };
-    if (client->options.rung[0])
-        apply_rung(&client->rung, &params);
+    if (client->options.configuration[0])
+        apply_configuration(&client->configuration, &params);
     struct error error = {""};
     uint64_t start = clock_now_us();
     enum render_result result = renderer_view_draw(thread->renderer, client->view, &params, &error);

@@ -35,7 +35,7 @@ static bool box_meets(const struct voxel_volume *volume, const struct voxel_leve
     return true;
 }
 
-static void cluster_bounds(const float *m, const struct resident_cluster *cluster, float scale,
+static void cluster_bounds(const float *m, const struct gpu_scene_cluster *cluster, float scale,
                            float out_low[3], float out_high[3])
 {
     const float *c = cluster->center;
@@ -47,41 +47,41 @@ static void cluster_bounds(const float *m, const struct resident_cluster *cluste
     }
 }
 
-static bool append_chunk(struct voxel_volume *volume, uint32_t instance, uint32_t first,
+static bool append_batch(struct voxel_volume *volume, uint32_t instance, uint32_t first,
                          uint32_t count, uint32_t region)
 {
-    size_t words = sizeof(struct voxel_batch) / 4, at = volume->chunk_count * words;
+    size_t words = sizeof(struct voxel_batch) / 4, at = volume->batch_count * words;
     if (!reserve(volume, at + words))
         return false;
     const struct voxel_batch batch = {instance, first, count, region};
     memcpy(volume->scratch + at, &batch, sizeof(batch));
-    volume->chunk_count++;
+    volume->batch_count++;
     return true;
 }
 
-static bool add_instance_chunks(struct voxel_volume *volume, const struct resident *resident,
-                                uint32_t number, uint32_t level, const struct voxel_box *box)
+static bool add_instance_batches(struct voxel_volume *volume, const struct gpu_scene *gpu_scene,
+                                 uint32_t number, uint32_t level, const struct voxel_box *box)
 {
-    const struct resident_instance *instance = &resident->instances[number];
+    const struct gpu_scene_instance *instance = &gpu_scene->instances[number];
     const float *matrix = instance->world_from_local;
     uint32_t triangles = instance->index_count / 3;
     for (uint32_t at = 0; at < triangles; at += VOXEL_BATCH) {
-        const struct resident_cluster *cluster =
-            &resident->clusters[instance->cluster_first + (at >> ID_BLOCK_BITS)];
+        const struct gpu_scene_cluster *cluster =
+            &gpu_scene->clusters[instance->cluster_first + (at >> ID_BLOCK_BITS)];
         float low[3], high[3];
         cluster_bounds(matrix, cluster, instance->scale, low, high);
         uint32_t count = triangles - at < VOXEL_BATCH ? triangles - at : VOXEL_BATCH;
         if (box_meets(volume, &volume->levels[level], box, low, high) &&
-            !append_chunk(volume, number, at, count, volume->region_count))
+            !append_batch(volume, number, at, count, volume->region_count))
             return false;
     }
     return true;
 }
 
-static bool add_regions(struct voxel_volume *volume, const struct resident *resident,
+static bool add_regions(struct voxel_volume *volume, const struct gpu_scene *gpu_scene,
                         struct voxel_region *regions)
 {
-    for (uint32_t level = 0; level < volume->lit_levels; level++) {
+    for (uint32_t level = 0; level < volume->cell_level_count; level++) {
         const struct voxel_boxes *dirty = &volume->dirty[level];
         for (uint32_t i = 0; i < dirty->count; i++) {
             const struct voxel_box *box = &dirty->boxes[i];
@@ -94,12 +94,12 @@ static bool add_regions(struct voxel_volume *volume, const struct resident *resi
             }
             region->level = level;
             region->first_voxel = volume->region_voxels;
-            for (uint32_t j = 0; j < resident->counts.instances; j++) {
-                const struct resident_instance *instance = &resident->instances[j];
+            for (uint32_t j = 0; j < gpu_scene->counts.instances; j++) {
+                const struct gpu_scene_instance *instance = &gpu_scene->instances[j];
                 if (instance->visible &&
                     box_meets(volume, &volume->levels[level], box, instance->bounds_min,
                               instance->bounds_max) &&
-                    !add_instance_chunks(volume, resident, j, level, box))
+                    !add_instance_batches(volume, gpu_scene, j, level, box))
                     return false;
             }
             volume->region_voxels += voxels;
@@ -118,10 +118,10 @@ static uint64_t hash_words(const uint32_t *words, size_t count)
 }
 
 // For each instance its surface, then for each surface its material and flags.
-static bool write_surfaces(struct voxel_volume *volume, const struct resident *resident)
+static bool write_surfaces(struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
-    uint32_t instances = resident->counts.instances;
-    uint32_t materials = resident->scene->material_count;
+    uint32_t instances = gpu_scene->counts.instances;
+    uint32_t materials = gpu_scene->scene->material_count;
     bool own = instances <= MAX_OWN_SURFACES;
     size_t words = (size_t)instances + (own ? instances : materials);
     uint32_t *table = calloc(words ? words : 1, sizeof(*table));
@@ -130,8 +130,8 @@ static bool write_surfaces(struct voxel_volume *volume, const struct resident *r
     for (uint32_t i = 0; i < materials && !own; i++)
         table[instances + i] = i | SURFACE_LIT_DIRECTLY;
     for (uint32_t i = 0; i < instances; i++) {
-        const struct resident_instance *instance = &resident->instances[i];
-        uint32_t material = resident->scene->primitives[instance->primitive].material;
+        const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
+        uint32_t material = gpu_scene->scene->primitives[instance->primitive].material;
         bool directly = instance->emits_directly && !instance->large_emitter;
         table[i] = own ? i : material;
         if (own)
@@ -152,26 +152,26 @@ static bool write_surfaces(struct voxel_volume *volume, const struct resident *r
     return done;
 }
 
-bool voxel_volume_prepare_work(struct voxel_volume *volume, const struct resident *resident)
+bool voxel_volume_prepare_work(struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
     struct voxel_region regions[VOXEL_MAX_REGIONS];
     memset(regions, 0, sizeof(regions));
     volume->region_count = 0;
     volume->region_voxels = 0;
-    volume->chunk_count = 0;
-    if (!write_surfaces(volume, resident) || !add_regions(volume, resident, regions))
+    volume->batch_count = 0;
+    if (!write_surfaces(volume, gpu_scene) || !add_regions(volume, gpu_scene, regions))
         return false;
-    if (!volume->work || volume->chunk_count > volume->chunk_capacity) {
-        volume->chunk_capacity = 2 * volume->chunk_count + 64;
+    if (!volume->work || volume->batch_count > volume->batch_capacity) {
+        volume->batch_capacity = 2 * volume->batch_count + 64;
         if (!gpu_buffer_ensure(volume->gpu, &volume->work, "gi.work", GPU_BUFFER_STATIC,
                                sizeof(regions) +
-                                   (size_t)volume->chunk_capacity * sizeof(struct voxel_batch)))
+                                   (size_t)volume->batch_capacity * sizeof(struct voxel_batch)))
             return false;
     }
     if (volume->region_count > 0) {
         gpu_buffer_write(volume->work, 0, sizeof(regions), regions);
         gpu_buffer_write(volume->work, sizeof(regions),
-                         volume->chunk_count * sizeof(struct voxel_batch), volume->scratch);
+                         volume->batch_count * sizeof(struct voxel_batch), volume->scratch);
     }
     return true;
 }

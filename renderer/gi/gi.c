@@ -15,7 +15,7 @@
 #define SCALE_GROWTH 8.0f
 #define SCALE_DECAY  64.0f
 // Ambient occlusion counts what is nearer than this share of the scene's diagonal.
-#define OCCLUSION_SHARE 0.05f
+#define OCCLUSION_FRACTION 0.05f
 // Pictures of a camera at rest that are averaged where pixels gather.
 #define CONE_PICTURES 4u
 // Fewer rays a pixel are noisier than the cache, which is shown instead.
@@ -23,7 +23,7 @@
 // Above every roughness.
 #define ALL_ROUGHNESS 1.01f
 // Frames in a row that show nothing new while light settles.
-#define QUIET_FRAMES 7u
+#define MAX_ACCUMULATE_ONLY_FRAMES 7u
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
@@ -93,7 +93,7 @@ static enum voxel_resolution automatic_resolution(const struct frame *frame,
     wanted.edge = edge_of(frame->quality->voxel_resolution);
     bool deep = wanted.method == GI_METHOD_CLIPMAP &&
                 frame->quality->voxel_resolution > VOXEL_RESOLUTION_64 &&
-                voxel_volume_choose_clip_levels(&wanted, frame->resident) > 1;
+                voxel_volume_choose_clip_levels(&wanted, frame->gpu_scene) > 1;
     return deep ? VOXEL_RESOLUTION_64 : frame->quality->voxel_resolution;
 }
 
@@ -176,26 +176,26 @@ static struct gi_volume *find_volume(struct gi *gi, const struct frame *frame,
     struct gi_volume *shared = NULL, *fitting = find_fitting(gi, frame, params, &shared);
     if (fitting)
         return fitting;
-    struct gi_volume *place = NULL;
+    struct gi_volume *slot = NULL;
     if (count_volumes(gi, own) == (own ? GI_MAX_OWN_VOLUMES : GI_MAX_SHARED_VOLUMES)) {
-        place = find_replaceable(gi, frame, params);
-        if (shared && (!place || place->owner != frame->view))
+        slot = find_replaceable(gi, frame, params);
+        if (shared && (!slot || slot->owner != frame->view))
             return shared;
-        if (!place)
+        if (!slot)
             return NULL;
-        voxel_volume_destroy(&place->volume);
-        *place = gi->volumes[--gi->volume_count];
+        voxel_volume_destroy(&slot->volume);
+        *slot = gi->volumes[--gi->volume_count];
     }
     struct voxel_volume *volume = voxel_volume_create(gi->gpu, params);
     if (!volume)
         return NULL;
     bool owned = own || params->method == GI_METHOD_CLIPMAP;
-    place = &gi->volumes[gi->volume_count++];
-    *place = (struct gi_volume){.volume = volume,
-                                .owner = owned ? frame->view : NULL,
-                                .own = own,
-                                .serial = gi->next_serial++};
-    return place;
+    slot = &gi->volumes[gi->volume_count++];
+    *slot = (struct gi_volume){.volume = volume,
+                               .owner = owned ? frame->view : NULL,
+                               .own = own,
+                               .serial = gi->next_serial++};
+    return slot;
 }
 
 static float brightest_channel(const float color[3])
@@ -207,11 +207,11 @@ static float brightest_channel(const float color[3])
 // that lights bring to surfaces some voxels away, all to the same, from emission and from the
 // environment.
 // Kept while it still suits, since what is stored was divided by it.
-static float radiance_scale(const struct resident *resident, float before)
+static float radiance_scale(const struct gpu_scene *gpu_scene, float before)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     float brightest = 0.0f;
-    float near = 0.05f * resident->diagonal_m;
+    float near = 0.05f * gpu_scene->diagonal_m;
     for (uint32_t i = 0; i < scene->light_count; i++) {
         const struct scene_light *light = &scene->lights[i];
         if (light->removed || !light->enabled || !(light->intensity > 0.0f) ||
@@ -252,7 +252,7 @@ static uint64_t hash_march(uint64_t hash, const struct cone_march *march)
 static uint64_t light_key(const struct frame *frame, const struct voxel_volume *volume)
 {
     const struct render_settings *settings = &frame->params->settings;
-    const struct scene_revisions *now = &frame->resident->scene->revisions;
+    const struct scene_revisions *now = &frame->gpu_scene->scene->revisions;
     uint64_t words[] = {
         now->geometry,
         now->transforms,
@@ -261,7 +261,7 @@ static uint64_t light_key(const struct frame *frame, const struct voxel_volume *
         settings->environment_light ? now->environment + 1 : 0,
         settings->bounces,
         settings->shadows,
-        frame_has(frame, EFFECT_BOUNCE),
+        frame_has(frame, EFFECT_MULTI_BOUNCE),
     };
     uint64_t hash = 1469598103934665603ull;
     for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
@@ -295,7 +295,7 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     fill_march(volume, automatic ? frame->quality->cone_set : settings->cone_set,
                own_step ? settings->cone_step : frame->quality->cone_step, &block->pixel_march,
                block->pixel_cones);
-    block->ao_radius_m = OCCLUSION_SHARE * frame->resident->diagonal_m;
+    block->ao_radius_m = OCCLUSION_FRACTION * frame->gpu_scene->diagonal_m;
     block->indirect_intensity = settings->indirect_intensity;
 }
 
@@ -311,18 +311,19 @@ uint32_t gi_gather_step(const struct frame *frame)
     return mode == GATHER_HALF ? 2 : mode == GATHER_RAYS ? frame->quality->ray_step : 1;
 }
 
-uint32_t gi_gathered_pictures(const struct frame *frame)
+uint32_t gi_accumulation_planes(const struct frame *frame)
 {
     if (gi_gather_mode(frame) != GATHER_RAYS)
         return 1;
-    return frame_has(frame, EFFECT_INDIRECT_SPECULAR) ? GATHERED_PICTURES : GATHERED_WITHOUT_GLOSS;
+    return frame_has(frame, EFFECT_INDIRECT_SPECULAR) ? PLANES_WITH_SPECULAR
+                                                      : PLANES_WITHOUT_SPECULAR;
 }
 
 bool gi_wants_ray_shadows(const struct frame *frame)
 {
     return frame->volume && gi_gather_mode(frame) == GATHER_RAYS &&
            frame_has(frame, EFFECT_SOFT_SHADOWS) &&
-           frame->resident->counts.lights <= GI_MOST_LIGHTS_OF_RAYS;
+           frame->gpu_scene->counts.lights <= GI_MAX_RAY_LIGHTS;
 }
 
 bool gi_traces_shadows(const struct frame *frame)
@@ -330,54 +331,58 @@ bool gi_traces_shadows(const struct frame *frame)
     return gi_wants_ray_shadows(frame) && frame->gather == GATHER_RAYS;
 }
 
-void gi_write_shares_defines(const struct frame *frame, char out_defines[GI_SHARES_DEFINES_LENGTH])
+void gi_write_visibility_defines(const struct frame *frame,
+                                 char out_defines[GI_VISIBILITY_DEFINES_LENGTH])
 {
     bool rays = gi_traces_shadows(frame);
-    snprintf(out_defines, GI_SHARES_DEFINES_LENGTH,
+    snprintf(out_defines, GI_VISIBILITY_DEFINES_LENGTH,
              "RAY_SHADOWS %d\nCONE_SHADOWS %d\nGATHER_STEP %u\nGATHERED_BEFORE_SHARES %u\n", rays,
              !rays && frame_has_cone_shadows(frame), gi_gather_step(frame),
-             gi_gathered_pictures(frame));
+             gi_accumulation_planes(frame));
 }
 
 // While light settles for pictures that are dear to draw, a few frames only do that.
-static void settle_quietly(struct frame *frame, const struct voxel_volume *volume)
+static void converge_without_shading(struct frame *frame, const struct voxel_volume *volume)
 {
     struct view *view = frame->view;
     bool shown = frame->unchanged && !frame->light_work.voxelize &&
-                 view->shown_light == volume->light.version && view->quiet_count < QUIET_FRAMES;
-    frame->quiet = shown && gi_gather_mode(frame) == GATHER_RAYS;
-    view->quiet_count = frame->quiet ? view->quiet_count + 1 : 0;
+                 view->shown_light == volume->light.version &&
+                 view->accumulate_only_count < MAX_ACCUMULATE_ONLY_FRAMES;
+    frame->accumulate_only = shown && gi_gather_mode(frame) == GATHER_RAYS;
+    view->accumulate_only_count = frame->accumulate_only ? view->accumulate_only_count + 1 : 0;
     view->shown_light = volume->light.version;
 }
 
 static void show_cache(struct frame *frame)
 {
     frame->gather = GATHER_CACHE;
-    frame->still_count = 0;
-    frame->view->still_count = 0;
+    frame->accumulated_samples = 0;
+    frame->view->accumulated_samples = 0;
 }
 
 // Whether the picture of before stays until rays are enough. Where bounces are counted the cache
 // holds one less than is shown and cannot stand in for rays.
-static bool waits_for_rays(const struct frame *frame, uint32_t count)
+static bool keeps_last_image(const struct frame *frame, uint32_t count)
 {
-    uint32_t enough = frame->still_frames < SHOWN_RAYS ? frame->still_frames : SHOWN_RAYS;
+    uint32_t enough =
+        frame->accumulation_target < SHOWN_RAYS ? frame->accumulation_target : SHOWN_RAYS;
     return frame->gather == GATHER_RAYS && count < enough && frame->params->settings.bounces == 0;
 }
 
 // One more picture of what pixels gather, or those of before if they are enough. What rays have
 // found is shown each time that their number has doubled, and with the last.
-static void gather_once_more(struct frame *frame, struct voxel_volume *volume)
+static void accumulate_once(struct frame *frame, struct voxel_volume *volume)
 {
     struct view *view = frame->view;
-    frame->gather_now = view->still_count < frame->still_frames;
-    view->still_count += frame->gather_now;
-    frame->still_count = view->still_count;
-    volume->uniforms.sample_count = (float)view->still_count;
-    bool doubled = (view->still_count & (view->still_count - 1)) == 0;
-    bool shown = view->still_count == frame->still_frames ||
-                 (doubled && !waits_for_rays(frame, view->still_count));
-    frame->quiet = frame->gather == GATHER_RAYS && frame->gather_now && frame->unchanged && !shown;
+    frame->accumulate = view->accumulated_samples < frame->accumulation_target;
+    view->accumulated_samples += frame->accumulate;
+    frame->accumulated_samples = view->accumulated_samples;
+    volume->uniforms.sample_count = (float)view->accumulated_samples;
+    bool doubled = (view->accumulated_samples & (view->accumulated_samples - 1)) == 0;
+    bool shown = view->accumulated_samples == frame->accumulation_target ||
+                 (doubled && !keeps_last_image(frame, view->accumulated_samples));
+    frame->accumulate_only =
+        frame->gather == GATHER_RAYS && frame->accumulate && frame->unchanged && !shown;
 }
 
 // Whether pixels read the cache rather than gather the last bounce themselves.
@@ -411,16 +416,16 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         return error_set(out_error,
                          "%u views have settings of their own; no more of them can have voxels",
                          GI_MAX_OWN_VOLUMES);
-    if (!volume || !voxel_volume_update(volume, frame->resident, frame->camera.eye))
+    if (!volume || !voxel_volume_update(volume, frame->gpu_scene, frame->camera.eye))
         return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
     frame->volume = volume;
     frame->view->volume_serial = found->serial;
     fill_cones(frame, volume);
-    volume->scale = radiance_scale(frame->resident, volume->scale);
+    volume->scale = radiance_scale(frame->gpu_scene, volume->scale);
     struct voxel_light_params light = {
         .key = light_key(frame, volume),
         .bounces = settings->bounces,
-        .feedback = frame_has(frame, EFFECT_BOUNCE),
+        .multi_bounce = frame_has(frame, EFFECT_MULTI_BOUNCE),
         .cache_shown = frame_shows_cache(frame),
         .camera_moved = frame->visibility_changed,
         .software = gpu_get_info(gi->gpu)->software,
@@ -431,19 +436,19 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
     return true;
 }
 
-bool gi_plan_gathering(struct frame *frame, struct error *out_error)
+bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
 {
     struct view *view = frame->view;
     struct voxel_volume *volume = frame->volume;
     if (!volume)
         return true;
     struct voxel_block *block = &volume->uniforms;
-    frame->still_frames = 1;
-    frame->still_count = 1;
+    frame->accumulation_target = 1;
+    frame->accumulated_samples = 1;
     if (frame->gather == GATHER_RAYS)
-        frame->still_frames = frame->quality->ray_pictures;
+        frame->accumulation_target = frame->quality->ray_pictures;
     else if (frame->gather != GATHER_CACHE)
-        frame->still_frames = CONE_PICTURES;
+        frame->accumulation_target = CONE_PICTURES;
     if (frame->gather != GATHER_CACHE) {
         uint64_t key = hash_march(volume->light.version, &block->pixel_march);
         key = hash_word(key, view->volume_serial);
@@ -451,22 +456,23 @@ bool gi_plan_gathering(struct frame *frame, struct error *out_error)
         // Of what nobody asked for nothing has been gathered.
         key = hash_word(key, frame->plan.bits);
         key = hash_word(key, (uint64_t)frame->params->debug_view);
-        if (frame->visibility_changed || frame->light_work.voxelize || key != view->gathered_key)
-            view->still_count = 0;
-        view->gathered_key = key;
+        if (frame->visibility_changed || frame->light_work.voxelize ||
+            key != view->accumulation_key)
+            view->accumulated_samples = 0;
+        view->accumulation_key = key;
         if (!volume->light.converged) {
             show_cache(frame);
-            settle_quietly(frame, volume);
-        } else if (!frame->unchanged && waits_for_rays(frame, view->still_count)) {
+            converge_without_shading(frame, volume);
+        } else if (!frame->unchanged && keeps_last_image(frame, view->accumulated_samples)) {
             show_cache(frame);
         } else {
-            gather_once_more(frame, volume);
+            accumulate_once(frame, volume);
         }
     }
     // One ray does for any lobe, so that all gloss has rays of its own where there are any.
     bool rays = frame->gather == GATHER_RAYS;
     block->specular_max_roughness = rays ? ALL_ROUGHNESS : frame->quality->specular_roughness;
     block->specular_min_reflectance = rays ? 0.0f : frame->quality->specular_reflectance;
-    return !rays || !frame->gather_now || resident_need_tree(frame->resident) ||
+    return !rays || !frame->accumulate || gpu_scene_need_tree(frame->gpu_scene) ||
            error_set(out_error, "a tree of the scene's triangles does not fit into memory");
 }

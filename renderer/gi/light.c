@@ -4,13 +4,13 @@
 #include <string.h>
 
 // Time that a frame may spend on cones of the cache, on a CPU: little while the camera moves.
-#define MOVING_TRACE_MS  10.0
-#define STILL_TRACE_MS   120.0
-#define FIRST_ENTRY_MS   0.006
-#define MIN_BUDGET       256.0
-#define MIN_STILL_BUDGET 6000.0
-#define MAX_BUDGET       1e6
-#define GPU_BUDGET       131072u
+#define MOVING_TRACE_MS 10.0
+#define REST_TRACE_MS   120.0
+#define FIRST_ENTRY_MS  0.006
+#define MIN_BUDGET      256.0
+#define MIN_REST_BUDGET 6000.0
+#define MAX_BUDGET      1e6
+#define GPU_BUDGET      131072u
 // Light has settled when what is still to come, a geometric series, is less than this share of any
 // voxel face's light.
 #define SETTLED_REST    0.008f
@@ -47,10 +47,10 @@ static double entry_budget(const struct voxel_volume *volume,
     if (!params->software)
         return GPU_BUDGET;
     double entry_ms = volume->light.entry_ms > 0.0 ? volume->light.entry_ms : FIRST_ENTRY_MS;
-    double budget = (params->camera_moved ? MOVING_TRACE_MS : STILL_TRACE_MS) / entry_ms;
+    double budget = (params->camera_moved ? MOVING_TRACE_MS : REST_TRACE_MS) / entry_ms;
     // The measured time holds what every frame pays, so that it must not be trusted to shrink
     // budgets without end.
-    return fmin(fmax(budget, params->camera_moved ? MIN_BUDGET : MIN_STILL_BUDGET), MAX_BUDGET);
+    return fmin(fmax(budget, params->camera_moved ? MIN_BUDGET : MIN_REST_BUDGET), MAX_BUDGET);
 }
 
 static void plan_relight(struct voxel_volume *volume, const struct voxel_light_params *params,
@@ -60,16 +60,16 @@ static void plan_relight(struct voxel_volume *volume, const struct voxel_light_p
     work->relight = light->relight;
     work->direct = light->relight_direct;
     work->fresh_only = light->filling && light->relight_direct;
-    work->relight_end = volume->lit_levels;
+    work->relight_end = volume->cell_level_count;
     if (!light->relight)
         return;
     // Voxels that have just come in are black: those cannot wait for their level's turn.
-    bool one = params->levels_per_frame == LEVELS_PER_FRAME_ONE && volume->lit_levels > 1 &&
+    bool one = params->levels_per_frame == LEVELS_PER_FRAME_ONE && volume->cell_level_count > 1 &&
                !work->voxelize;
     if (one) {
-        work->relight_first = light->next_level % volume->lit_levels;
+        work->relight_first = light->next_level % volume->cell_level_count;
         work->relight_end = work->relight_first + 1;
-        light->next_level = work->relight_end % volume->lit_levels;
+        light->next_level = work->relight_end % volume->cell_level_count;
         light->relight = light->next_level != 0;
         light->relight_direct = light->relight_direct && light->relight;
     } else {
@@ -86,7 +86,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     *out_work = (struct voxel_light_work){.voxelize = volume->region_count > 0};
     light->needed = generations_needed(params);
     light->unlimited = params->bounces == 0;
-    light->everything_asked = params->feedback;
+    light->all_faces_requested = params->multi_bounce;
     volume->frame = volume->frame % 0x7fffffffu + 1;
     if (volume->lit_key != params->key || light->generation == 0) {
         light->relight_direct = true;
@@ -109,7 +109,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->converged = false;
         light->quiet_frames = 0;
     }
-    if (!params->feedback && params->camera_moved) {
+    if (!params->multi_bounce && params->camera_moved) {
         light->converged = false;
         light->quiet_frames = 0;
     }
@@ -124,11 +124,11 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     plan_relight(volume, params, out_work);
     out_work->trace = !light->converged && !(light->relight && light->next_level != 0);
     // The first generation after an edit must not see old light where bounces are counted.
-    bool feeds = params->feedback && (light->bounce > 0 || light->unlimited);
+    bool feeds = params->multi_bounce && (light->bounce > 0 || light->unlimited);
     volume->uniforms.cache_generation = light->generation;
     volume->uniforms.frame_number = volume->frame;
     volume->uniforms.trace_budget = (uint32_t)entry_budget(volume, params);
-    volume->uniforms.multi_bounce = params->feedback;
+    volume->uniforms.multi_bounce = params->multi_bounce;
     volume->uniforms.peak_radiance = light->peak;
     light->feeds = feeds;
 }
@@ -149,7 +149,7 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     light->left = report->left;
     light->quiet_frames = report->left == 0 && report->traced == 0 ? light->quiet_frames + 1 : 0;
     bool complete =
-        light->everything_asked ? report->left == 0 : light->quiet_frames >= REQUEST_PATTERN;
+        light->all_faces_requested ? report->left == 0 : light->quiet_frames >= REQUEST_PATTERN;
     if (!complete)
         return;
     if (light->filling) {

@@ -9,7 +9,7 @@
 struct voxel_light_work {
     bool voxelize;
     bool relight;
-    bool direct;            // by lamps, too, rather than by the cache alone
+    bool direct;            // by lights, too, rather than by the cache alone
     bool fresh_only;        // only cells that have not been lit before
     uint32_t relight_first; // levels
     uint32_t relight_end;
@@ -17,10 +17,10 @@ struct voxel_light_work {
 };
 
 struct voxel_light_params {
-    uint64_t key;     // of everything that light depends on, but for where the camera is
-    uint32_t bounces; // 0: unlimited
-    bool feedback;    // voxels reflect what the cache holds
-    bool cache_shown; // pixels read the cache, rather than gather the last bounce themselves
+    uint64_t key;      // of everything that light depends on, but for where the camera is
+    uint32_t bounces;  // 0: unlimited
+    bool multi_bounce; // voxels reflect what the cache holds
+    bool cache_shown;  // pixels read the cache, rather than gather the last bounce themselves
     bool camera_moved;
     bool software;
     enum levels_per_frame levels_per_frame;
@@ -34,7 +34,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
 // What the counters said when a frame was done, read back without waiting.
 struct voxel_light_report {
     uint32_t overflow; // OVERFLOW_ bits
-    uint32_t cut;      // values that half floats do not hold, since the volume was made
+    uint32_t clamped;  // values that half floats do not hold, since the volume was made
     uint32_t left;
     uint32_t change_bits;
     uint32_t traced;

@@ -52,7 +52,7 @@ static bool create_pools(struct voxel_volume *volume)
     size_t cells = volume->cell_capacity, surfels = volume->surfel_capacity;
     // Bits that tell which voxels of the mip levels are occupied.
     size_t bits = 0;
-    for (uint32_t i = volume->lit_levels; i < volume->level_count; i++)
+    for (uint32_t i = volume->cell_level_count; i < volume->level_count; i++)
         bits += (size_t)1 << (3 * log2_of(volume->levels[i].edge));
     volume->mip_words = bits / 32 + 1;
     volume->list_words = volume->level_count * cells + volume->mip_words;
@@ -70,10 +70,10 @@ static bool create_pools(struct voxel_volume *volume)
 static struct gpu_texture *create_texture(const struct voxel_volume *volume)
 {
     uint32_t outer = volume->params.edge + 2;
-    uint32_t height = outer * volume->lit_levels;
+    uint32_t height = outer * volume->cell_level_count;
     // Mip levels lie side by side: halves, quarters and so on down to 8 voxels, with their borders,
     // are together no wider than the finest level.
-    if (volume->level_count > volume->lit_levels)
+    if (volume->level_count > volume->cell_level_count)
         height += outer / 2 + 1;
     uint32_t width = volume->face_count * outer;
     return gpu_texture_create(volume->gpu, &(struct gpu_texture_params){
@@ -90,14 +90,14 @@ static bool create_storage(struct voxel_volume *volume)
 {
     size_t per_level = (size_t)1 << (3 * log2_of(volume->params.edge));
     volume->radiance = create_texture(volume);
-    volume->index = make(volume, "gi.index", per_level * volume->lit_levels);
+    volume->index = make(volume, "gi.index", per_level * volume->cell_level_count);
     volume->counters = make(volume, "gi.counters", COUNTER_COUNT);
     volume->tile_capacity = TILE_CAPACITY;
     volume->tiles = make(volume, "gi.tiles", (size_t)TILE_CAPACITY * 4);
     volume->block = make(volume, "gi.uniforms", sizeof(struct voxel_block) / 4);
     uint32_t area = volume->params.edge * volume->params.edge;
-    volume->cell_capacity = 4 * area * volume->lit_levels;
-    volume->surfel_capacity = 6 * area * volume->lit_levels;
+    volume->cell_capacity = 4 * area * volume->cell_level_count;
+    volume->surfel_capacity = 6 * area * volume->cell_level_count;
     return volume->radiance && volume->index && volume->counters && volume->tiles &&
            volume->block && create_pools(volume);
 }
@@ -112,7 +112,7 @@ static void destroy_storage(struct voxel_volume *volume)
     gpu_buffer_destroy(&volume->block);
     gpu_buffer_destroy(&volume->work);
     gpu_buffer_destroy(&volume->surfaces);
-    volume->chunk_capacity = 0;
+    volume->batch_capacity = 0;
 }
 
 struct voxel_volume *voxel_volume_create(struct gpu *gpu, const struct voxel_volume_params *params)
@@ -144,25 +144,25 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static float extent_of(const struct resident *resident)
+static float extent_of(const struct gpu_scene *gpu_scene)
 {
     float extent = 0.0f;
     for (int axis = 0; axis < 3; axis++)
-        extent = fmaxf(extent, resident->bounds_max[axis] - resident->bounds_min[axis]);
+        extent = fmaxf(extent, gpu_scene->bounds_max[axis] - gpu_scene->bounds_min[axis]);
     return extent > 0.0f && isfinite(extent) ? extent : 1.0f;
 }
 
 uint32_t voxel_volume_choose_clip_levels(const struct voxel_volume_params *params,
-                                         const struct resident *resident)
+                                         const struct gpu_scene *gpu_scene)
 {
-    uint32_t most = params->edge <= 64 ? 4 : CLIP_MAX_LEVELS;
+    uint32_t maximum = params->edge <= 64 ? 4 : CLIP_MAX_LEVELS;
     if (params->clip_levels > 0)
         return params->clip_levels < CLIP_MAX_LEVELS ? params->clip_levels : CLIP_MAX_LEVELS;
-    float extent = extent_of(resident);
-    float *extents = malloc((resident->counts.instances + 1) * sizeof(*extents));
+    float extent = extent_of(gpu_scene);
+    float *extents = malloc((gpu_scene->counts.instances + 1) * sizeof(*extents));
     uint32_t count = 0;
-    for (uint32_t i = 0; extents && i < resident->counts.instances; i++) {
-        const struct resident_instance *instance = &resident->instances[i];
+    for (uint32_t i = 0; extents && i < gpu_scene->counts.instances; i++) {
+        const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
         float largest = 0.0f;
         for (int axis = 0; axis < 3; axis++)
             largest = fmaxf(largest, instance->bounds_max[axis] - instance->bounds_min[axis]);
@@ -177,33 +177,34 @@ uint32_t voxel_volume_choose_clip_levels(const struct voxel_volume_params *param
     free(extents);
     float wanted = TYPICAL_OBJECT_VOXELS / (float)params->edge;
     float levels = 1.0f + roundf(log2f(extent / typical * wanted));
-    return (uint32_t)fminf(fmaxf(levels, 1.0f), (float)most);
+    return (uint32_t)fminf(fmaxf(levels, 1.0f), (float)maximum);
 }
 
 // Where the levels lie, from the scene's bounds; allocates what depends on their number.
-static bool lay_out(struct voxel_volume *volume, const struct resident *resident)
+static bool lay_out(struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
     bool clipmap = volume->params.method == GI_METHOD_CLIPMAP;
     for (int axis = 0; axis < 3; axis++) {
-        float low = resident->bounds_min[axis], high = resident->bounds_max[axis];
+        float low = gpu_scene->bounds_min[axis], high = gpu_scene->bounds_max[axis];
         bool finite = isfinite(low) && isfinite(high);
         volume->bounds_min[axis] = finite ? low : 0.0f;
         volume->bounds_max[axis] = finite ? high : 0.0f;
     }
-    float extent = extent_of(resident);
+    float extent = extent_of(gpu_scene);
     uint32_t edge = volume->params.edge;
-    uint32_t lit_levels = clipmap ? voxel_volume_choose_clip_levels(&volume->params, resident) : 1;
-    bool same = volume->radiance && lit_levels == volume->lit_levels;
+    uint32_t cell_level_count =
+        clipmap ? voxel_volume_choose_clip_levels(&volume->params, gpu_scene) : 1;
+    bool same = volume->radiance && cell_level_count == volume->cell_level_count;
     // A single level has mips down to 8^3; several are each other's.
-    uint32_t levels = lit_levels > 1 ? lit_levels : 1 + log2_of(edge) - 3;
+    uint32_t levels = cell_level_count > 1 ? cell_level_count : 1 + log2_of(edge) - 3;
     volume->level_count = levels;
-    volume->lit_levels = lit_levels;
-    uint32_t doublings = lit_levels - 1;
+    volume->cell_level_count = cell_level_count;
+    uint32_t doublings = cell_level_count - 1;
     double coarse = extent / ((double)edge - MARGIN_VOXELS);
     // Exact powers of two apart, and exact as floats, so that shaders see the same voxels.
     double fine = (double)(float)ldexp(coarse, -(int)doublings);
     for (uint32_t i = 0; i < levels; i++) {
-        volume->levels[i].edge = i < lit_levels ? edge : edge >> (i - doublings);
+        volume->levels[i].edge = i < cell_level_count ? edge : edge >> (i - doublings);
         volume->levels[i].voxel_edge_m = ldexp(fine, (int)i);
     }
     double middle_offset = ANCHOR_OFFSET * ldexp(fine, (int)doublings);
@@ -221,13 +222,13 @@ static bool lay_out(struct voxel_volume *volume, const struct resident *resident
     return true;
 }
 
-static bool covers_scene(const struct voxel_volume *volume, const struct resident *resident)
+static bool covers_scene(const struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
     float old_size = 0.0f, size = 0.0f;
     for (int axis = 0; axis < 3; axis++) {
         // Less than the margin, of which the anchor's offset takes a third of a voxel.
-        float slack = 1.5f * (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
-        float low = resident->bounds_min[axis], high = resident->bounds_max[axis];
+        float slack = 1.5f * (float)volume->levels[volume->cell_level_count - 1].voxel_edge_m;
+        float low = gpu_scene->bounds_min[axis], high = gpu_scene->bounds_max[axis];
         if (low < volume->bounds_min[axis] - slack || high > volume->bounds_max[axis] + slack)
             return false;
         old_size = fmaxf(old_size, volume->bounds_max[axis] - volume->bounds_min[axis]);
@@ -238,13 +239,13 @@ static bool covers_scene(const struct voxel_volume *volume, const struct residen
 }
 
 // The region of a clip level: around the camera, but no further out than the scene reaches.
-static void place_level(const struct voxel_volume *volume, uint32_t number, const float eye[3],
-                        struct voxel_box *out_box)
+static void position_level(const struct voxel_volume *volume, uint32_t number, const float eye[3],
+                           struct voxel_box *out_box)
 {
     const struct voxel_level *level = &volume->levels[number];
     int32_t edge = (int32_t)level->edge;
     for (int axis = 0; axis < 3; axis++) {
-        if (number >= volume->lit_levels) { // a mip of the level before
+        if (number >= volume->cell_level_count) { // a mip of the level before
             out_box->low[axis] = volume->levels[number - 1].box.low[axis] / 2;
             out_box->high[axis] = out_box->low[axis] + edge;
             continue;
@@ -258,7 +259,7 @@ static void place_level(const struct voxel_volume *volume, uint32_t number, cons
         double voxel = (center - volume->anchor[axis]) / level->voxel_edge_m;
         int32_t snapped = SNAP_VOXELS * (int32_t)floor(voxel / SNAP_VOXELS + 0.5);
         // The coarsest level covers the scene and stays where it is.
-        if (number + 1 == volume->lit_levels)
+        if (number + 1 == volume->cell_level_count)
             snapped = 0;
         out_box->low[axis] = snapped - edge / 2;
         out_box->high[axis] = snapped + edge / 2;
@@ -271,15 +272,15 @@ static void move_levels(struct voxel_volume *volume, const float eye[3])
     for (uint32_t i = 0; i < volume->level_count; i++) {
         struct voxel_level *level = &volume->levels[i];
         struct voxel_box box;
-        place_level(volume, i, eye, &box);
+        position_level(volume, i, eye, &box);
         volume->dirty[i].count = 0;
         if (volume->everything)
             voxel_boxes_add(&volume->dirty[i], box);
-        else if (i < volume->lit_levels)
+        else if (i < volume->cell_level_count)
             voxel_boxes_entered(&volume->dirty[i], &level->box, &box);
         level->box = box;
         level->inner = (struct voxel_box){0};
-        for (int axis = 0; axis < 3 && i > 0 && i < volume->lit_levels; axis++) {
+        for (int axis = 0; axis < 3 && i > 0 && i < volume->cell_level_count; axis++) {
             level->inner.low[axis] = volume->levels[i - 1].box.low[axis] / 2;
             level->inner.high[axis] = volume->levels[i - 1].box.high[axis] / 2;
         }
@@ -304,14 +305,15 @@ static struct voxel_box box_of_bounds(const struct voxel_volume *volume,
 static void mark_bounds(struct voxel_volume *volume, const struct voxel_box kept[],
                         const float low[3], const float high[3])
 {
-    for (uint32_t i = 0; i < volume->lit_levels; i++) {
+    for (uint32_t i = 0; i < volume->cell_level_count; i++) {
         struct voxel_box box = box_of_bounds(volume, &volume->levels[i], low, high);
         box = voxel_box_intersect(&box, &kept[i]);
         voxel_boxes_add(&volume->dirty[i], box);
     }
 }
 
-static void remember_instance(struct voxel_instance *seen, const struct resident_instance *instance)
+static void remember_instance(struct voxel_instance *seen,
+                              const struct gpu_scene_instance *instance)
 {
     memcpy(seen->matrix, instance->world_from_local, sizeof(seen->matrix));
     memcpy(seen->bounds_min, instance->bounds_min, sizeof(seen->bounds_min));
@@ -321,11 +323,11 @@ static void remember_instance(struct voxel_instance *seen, const struct resident
 
 // Marks where moved, shown and hidden objects were and are. `kept`: per level what was covered
 // before and still is; the rest is marked already.
-static void mark_moved_instances(struct voxel_volume *volume, const struct resident *resident,
+static void mark_moved_instances(struct voxel_volume *volume, const struct gpu_scene *gpu_scene,
                                  const struct voxel_box kept[])
 {
     for (uint32_t i = 0; i < volume->instance_count; i++) {
-        const struct resident_instance *instance = &resident->instances[i];
+        const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
         struct voxel_instance *seen = &volume->instances[i];
         const float *matrix = instance->world_from_local;
         if (seen->visible == instance->visible &&
@@ -339,14 +341,14 @@ static void mark_moved_instances(struct voxel_volume *volume, const struct resid
     }
 }
 
-static bool remember_all_instances(struct voxel_volume *volume, const struct resident *resident)
+static bool remember_all_instances(struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
-    uint32_t count = resident->counts.instances;
+    uint32_t count = gpu_scene->counts.instances;
     free(volume->instances);
     volume->instances = calloc(count ? count : 1, sizeof(*volume->instances));
     volume->instance_count = volume->instances ? count : 0;
     for (uint32_t i = 0; i < volume->instance_count; i++)
-        remember_instance(&volume->instances[i], &resident->instances[i]);
+        remember_instance(&volume->instances[i], &gpu_scene->instances[i]);
     return volume->instances != NULL;
 }
 
@@ -396,13 +398,14 @@ static void give_up_storage(struct voxel_volume *volume)
     volume->laid_out = false;
 }
 
-static bool update(struct voxel_volume *volume, const struct resident *resident, const float eye[3])
+static bool update(struct voxel_volume *volume, const struct gpu_scene *gpu_scene,
+                   const float eye[3])
 {
-    const struct scene_revisions *now = &resident->scene->revisions;
+    const struct scene_revisions *now = &gpu_scene->scene->revisions;
     bool geometry = !volume->laid_out || now->geometry != volume->geometry_seen;
     bool transforms = now->transforms != volume->transforms_seen;
-    if (geometry || (transforms && !covers_scene(volume, resident)))
-        if (!lay_out(volume, resident))
+    if (geometry || (transforms && !covers_scene(volume, gpu_scene)))
+        if (!lay_out(volume, gpu_scene))
             return false;
     if (volume->faces_full && !make_room_for_faces(volume))
         return false;
@@ -413,23 +416,23 @@ static bool update(struct voxel_volume *volume, const struct resident *resident,
     for (uint32_t i = 0; i < volume->level_count; i++)
         kept[i] = voxel_box_intersect(&before[i], &volume->levels[i].box);
     if (volume->everything) {
-        if (!remember_all_instances(volume, resident))
+        if (!remember_all_instances(volume, gpu_scene))
             return false;
     } else if (transforms) {
-        mark_moved_instances(volume, resident, kept);
+        mark_moved_instances(volume, gpu_scene, kept);
     }
     // Hits of cones outlive a camera's motion, but not geometry's.
     if (volume->everything || transforms)
         volume->epoch = (volume->epoch + 1) & 0xffu;
     volume->geometry_seen = now->geometry;
     volume->transforms_seen = now->transforms;
-    return voxel_volume_prepare_work(volume, resident);
+    return voxel_volume_prepare_work(volume, gpu_scene);
 }
 
-bool voxel_volume_update(struct voxel_volume *volume, const struct resident *resident,
+bool voxel_volume_update(struct voxel_volume *volume, const struct gpu_scene *gpu_scene,
                          const float eye[3])
 {
-    bool done = update(volume, resident, eye);
+    bool done = update(volume, gpu_scene, eye);
     if (!done)
         give_up_storage(volume);
     return done;
@@ -473,7 +476,7 @@ static void fill_levels(const struct voxel_volume *volume, struct voxel_block *b
         const struct voxel_level *level = &volume->levels[i];
         struct voxel_level_block *target = &block->levels[i];
         int32_t edge = (int32_t)level->edge;
-        bool mip = i >= volume->lit_levels;
+        bool mip = i >= volume->cell_level_count;
         for (int axis = 0; axis < 3; axis++) {
             target->origin[axis] = level->box.low[axis];
             target->inner_origin[axis] = level->inner.low[axis];
@@ -481,7 +484,7 @@ static void fill_levels(const struct voxel_volume *volume, struct voxel_block *b
         }
         target->edge = edge;
         target->inner_edge = level->inner.high[0] - level->inner.low[0];
-        target->texel_origin[1] += outer * (int32_t)(mip ? volume->lit_levels : i);
+        target->texel_origin[1] += outer * (int32_t)(mip ? volume->cell_level_count : i);
         if (mip) {
             target->texel_origin[0] += mip_x;
             mip_x += (int32_t)volume->face_count * (edge + 2);
@@ -510,15 +513,15 @@ void voxel_volume_bind(struct voxel_volume *volume)
     block->surfel_capacity = volume->surfel_capacity;
     block->region_count = volume->region_count;
     block->region_voxel_count = volume->region_voxels;
-    block->batch_count = volume->chunk_count;
+    block->batch_count = volume->batch_count;
     block->tile_capacity = volume->tile_capacity;
-    block->cell_level_count = volume->lit_levels;
+    block->cell_level_count = volume->cell_level_count;
     block->face_record_words = face_words(volume);
     block->face_capacity = volume->face_capacity;
     block->geometry_epoch = volume->epoch;
     // No cone blurs over more than a voxel of the coarsest level: wider ones take what is before an
     // opening or behind a corner for part of it, and see both sides of thin slanted walls.
-    block->cone_max_diameter_m = (float)volume->levels[volume->lit_levels - 1].voxel_edge_m;
+    block->cone_max_diameter_m = (float)volume->levels[volume->cell_level_count - 1].voxel_edge_m;
     block->list_capacity = volume->cell_capacity;
     block->instance_count = volume->instance_count;
     fill_levels(volume, block);

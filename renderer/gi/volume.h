@@ -23,7 +23,7 @@ struct voxel_volume_params {
 // the scene while the finest resolves a typical object. Goes by ratios of extents, so that the
 // scene's unit does not matter. Looks at every instance.
 uint32_t voxel_volume_choose_clip_levels(const struct voxel_volume_params *params,
-                                         const struct resident *resident);
+                                         const struct gpu_scene *gpu_scene);
 
 struct voxel_level {
     uint32_t edge;
@@ -43,33 +43,33 @@ struct voxel_instance {
 // How far light has come on its way to being converged; see gi/light.c.
 struct voxel_light_state {
     bool relight;        // voxels must be lit anew
-    bool relight_direct; // by lamps, too, rather than by the cache alone
+    bool relight_direct; // by lights, too, rather than by the cache alone
     bool filling;        // settled but for voxels that a moving level has brought in
     bool settled_once;   // since the volume was made
     bool start_pending;  // the next frame begins a generation of the cache
     bool converged;
-    bool unlimited;        // bounces
-    bool everything_asked; // voxels need all faces, not only those that pixels see
-    bool feeds;            // voxels reflect what the cache holds
-    uint32_t generation;   // counts, 1 to 65535, then over again
-    uint32_t bounce;       // generations completed since light last changed
-    uint32_t needed;       // generations for the bounces asked for
-    uint32_t quiet_frames; // in a row, in which nothing was left to trace
-    uint32_t left;         // faces that the newest report says are stale
-    uint32_t next_level;   // to relight, where one level is relit a frame
-    uint32_t version;      // counts changes of the radiance that cones see
-    float change;          // in the generation that ended last, relative to the brightest face
-    float rest;            // relative change that is still to come
-    float peak;            // brightest face then, over the scale
-    double entry_ms;       // measured cost of a face
+    bool unlimited;           // bounces
+    bool all_faces_requested; // voxels need all faces, not only those that pixels see
+    bool feeds;               // voxels reflect what the cache holds
+    uint32_t generation;      // counts, 1 to 65535, then over again
+    uint32_t bounce;          // generations completed since light last changed
+    uint32_t needed;          // generations for the bounces asked for
+    uint32_t quiet_frames;    // in a row, in which nothing was left to trace
+    uint32_t left;            // faces that the newest report says are stale
+    uint32_t next_level;      // to relight, where one level is relit a frame
+    uint32_t version;         // counts changes of the radiance that cones see
+    float change;             // in the generation that ended last, relative to the brightest face
+    float rest;               // relative change that is still to come
+    float peak;               // brightest face then, over the scale
+    double entry_ms;          // measured cost of a face
 };
 
 struct voxel_volume {
     struct gpu *gpu;
     struct voxel_volume_params params;
     uint32_t level_count;
-    uint32_t
-        lit_levels; // levels that have cells of their own: 1 for a grid; then come mips of the last
+    uint32_t cell_level_count; // levels that have cells of their own: 1 for a grid; then come mips
+                               // of the last
     uint32_t face_count;
     double anchor[3];
     float bounds_min[3]; // of the scene that the voxels were laid out for
@@ -94,7 +94,7 @@ struct voxel_volume {
     uint32_t face_capacity;
     uint32_t face_growth; // doublings
     uint32_t tile_capacity;
-    uint32_t chunk_capacity;
+    uint32_t batch_capacity;
     uint32_t cell_count; // cells up to the highest in use
     size_t list_words;
     size_t mip_words; // of those, at the end: bits that tell which voxels of mips are occupied
@@ -105,7 +105,7 @@ struct voxel_volume {
     bool everything; // all voxels anew
     uint32_t region_count;
     uint32_t region_voxels;
-    uint32_t chunk_count;
+    uint32_t batch_count;
     struct voxel_boxes dirty[VOXEL_MAX_LEVELS];
     struct voxel_instance *instances; // as voxelized
     uint32_t instance_count;
@@ -118,9 +118,9 @@ struct voxel_volume {
 
     uint64_t lit_key; // of everything that light depends on
     struct voxel_light_state light;
-    uint32_t frame; // counts draws
-    float scale;    // radiance is stored divided by it
-    uint32_t cut;   // values that half floats did not hold, so far
+    uint32_t frame;   // counts draws
+    float scale;      // radiance is stored divided by it
+    uint32_t clamped; // values that half floats did not hold, so far
     struct voxel_block uniforms;
 };
 
@@ -130,12 +130,12 @@ void voxel_volume_destroy(struct voxel_volume **volume);
 
 // Works out what must be voxelized for the scene as it is and a camera at `eye`, and prepares the
 // chunks of triangles. False when memory ends.
-bool voxel_volume_update(struct voxel_volume *volume, const struct resident *resident,
+bool voxel_volume_update(struct voxel_volume *volume, const struct gpu_scene *gpu_scene,
                          const float eye[3]);
 
 // Part of the above, in gi/chunks.c: regions, chunks of triangles that may touch them, and the
 // table of surfaces.
-bool voxel_volume_prepare_work(struct voxel_volume *volume, const struct resident *resident);
+bool voxel_volume_prepare_work(struct voxel_volume *volume, const struct gpu_scene *gpu_scene);
 
 // After a voxelization: whether it had room. If not, pools have been enlarged and everything must
 // be voxelized again (voxel_volume_update, then the pass). Waits for the GPU.

@@ -25,21 +25,21 @@ static bool display_retain(EGLDisplay display)
 {
     bool done = false;
     pthread_mutex_lock(&display_mutex);
-    size_t place = 0, count = sizeof(displays) / sizeof(displays[0]);
+    size_t slot = 0, count = sizeof(displays) / sizeof(displays[0]);
     for (size_t i = count; i-- > 0;)
         if (displays[i].users == 0)
-            place = i;
+            slot = i;
     for (size_t i = 0; i < count; i++)
         if (displays[i].users > 0 && displays[i].display == display)
-            place = i;
+            slot = i;
     EGLint major, minor;
-    if (displays[place].users > 0)
-        done = displays[place].display == display;
+    if (displays[slot].users > 0)
+        done = displays[slot].display == display;
     else
         done = eglInitialize(display, &major, &minor);
     if (done) {
-        displays[place].display = display;
-        displays[place].users++;
+        displays[slot].display = display;
+        displays[slot].users++;
     }
     pthread_mutex_unlock(&display_mutex);
     return done;

@@ -227,10 +227,10 @@ static void use_program(struct gpu *gpu, const struct gpu_program *program)
     gpu->current_program = name;
 }
 
-void gpu_set_give_way(struct gpu *gpu, void (*give_way)(void *user), void *user)
+void gpu_set_yield(struct gpu *gpu, void (*yield)(void *user), void *user)
 {
-    gpu->give_way = gpu->info.software ? give_way : NULL;
-    gpu->give_way_user = user;
+    gpu->yield = gpu->info.software ? yield : NULL;
+    gpu->yield_user = user;
 }
 
 double gpu_clock_ms(const struct gpu *gpu)
@@ -238,12 +238,12 @@ double gpu_clock_ms(const struct gpu *gpu)
     return clock_now_ms() - gpu->waited_ms;
 }
 
-static void give_way(struct gpu *gpu)
+static void yield(struct gpu *gpu)
 {
-    if (!gpu->give_way)
+    if (!gpu->yield)
         return;
     double from_ms = clock_now_ms();
-    gpu->give_way(gpu->give_way_user);
+    gpu->yield(gpu->yield_user);
     gpu->waited_ms += clock_now_ms() - from_ms;
 }
 
@@ -252,7 +252,7 @@ void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x
 {
     if (x == 0 || y == 0 || z == 0)
         return;
-    give_way(gpu);
+    yield(gpu);
     use_program(gpu, program);
     glDispatchCompute(x, y, z);
 }
@@ -260,7 +260,7 @@ void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x
 void gpu_dispatch_indirect(struct gpu *gpu, const struct gpu_program *program,
                            const struct gpu_buffer *arguments, size_t offset_bytes)
 {
-    give_way(gpu);
+    yield(gpu);
     use_program(gpu, program);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gpu_buffer_name(arguments));
     glDispatchComputeIndirect((GLintptr)offset_bytes);
@@ -276,7 +276,7 @@ void gpu_draw_indirect(struct gpu *gpu, const struct gpu_draw_params *params)
 {
     if (params->count == 0)
         return;
-    give_way(gpu);
+    yield(gpu);
     use_program(gpu, params->program);
     GLuint vertex_array = *(const GLuint *)params->geometry;
     glVertexArrayVertexBuffer(vertex_array, 1, gpu_buffer_name(params->records), 0,

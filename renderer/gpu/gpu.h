@@ -37,13 +37,13 @@ uint64_t gpu_error_count(const struct gpu *gpu);
 // Bytes of all live buffers and textures whose label starts with `prefix`.
 uint64_t gpu_memory_bytes(const struct gpu *gpu, const char *prefix);
 
-// Calls `give_way`, which may wait, before each piece of work (dispatches, and what is drawn at
+// Calls `yield`, which may wait, before each piece of work (dispatches, and what is drawn at
 // once). On CPU drivers alone: those run one piece after another, whoever wants them, so that a
 // frame of many long ones would hold up all others; GPUs are done with a frame before anybody
 // notices. NULL: nobody is asked, as after gpu_create().
-void gpu_set_give_way(struct gpu *gpu, void (*give_way)(void *user), void *user);
+void gpu_set_yield(struct gpu *gpu, void (*yield)(void *user), void *user);
 
-// A clock that stands still while `give_way` waits.
+// A clock that stands still while `yield` waits.
 double gpu_clock_ms(const struct gpu *gpu);
 
 // Debug groups, seen in captures and in debug messages.

@@ -28,8 +28,8 @@ struct gpu {
     struct gpu_allocation *allocations;
     struct gpu_program_library *programs;
     uint32_t current_program;
-    void (*give_way)(void *user); // NULL for none
-    void *give_way_user;
+    void (*yield)(void *user); // NULL for none
+    void *yield_user;
     double waited_ms;                      // in it, so far
     uint64_t faults[RENDERER_FAULT_COUNT]; // events until the one that fails; 0: none does
     bool lost;

@@ -15,7 +15,7 @@ uint32_t frame_debug_level(const struct frame *frame)
 // Levels beyond are mips, which hold light and opacity alone.
 static bool debug_level_has_cells(const struct frame *frame)
 {
-    return frame_debug_level(frame) < frame->volume->lit_levels;
+    return frame_debug_level(frame) < frame->volume->cell_level_count;
 }
 
 bool frame_shows_light(const struct frame *frame)
@@ -101,7 +101,7 @@ static bool debug_view_run(struct frame *frame, const struct pass *pass, struct 
 
 const struct pass debug_view_pass = {
     .name = "debug_view",
-    .effects_used = EFFECT_BIT(EFFECT_FLAT_SHADOWS) | EFFECT_BIT(EFFECT_CUBE_SHADOWS) |
+    .effects_used = EFFECT_BIT(EFFECT_SINGLE_VIEW_SHADOWS) | EFFECT_BIT(EFFECT_POINT_SHADOWS) |
                     EFFECT_BIT(EFFECT_LIGHT_TILES),
     .use_count = 9,
     .uses = {{RESOURCE_IDS, ACCESS_READ},

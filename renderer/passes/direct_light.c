@@ -9,7 +9,7 @@ static const char *direct_light_skip_reason(const struct frame *frame)
 {
     if (!frame_has(frame, EFFECT_PUNCTUAL_LIGHTS) && !frame_has(frame, EFFECT_AREA_LIGHTS))
         return "no light in the scene";
-    if (frame->resident->counts.lit_materials == 0 && !frame->params->settings.force_all_effects)
+    if (frame->gpu_scene->counts.lit_materials == 0 && !frame->params->settings.force_all_effects)
         return "every surface is unlit";
     return frame_lights_pixels(frame) ? NULL : "the debug view shows no light";
 }
@@ -18,10 +18,10 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
 {
     // The first pass to write radiance starts from the emission.
     bool first = environment_pass.skip_reason(frame) != NULL;
-    char extra[GI_SHARES_DEFINES_LENGTH + 16], shares[GI_SHARES_DEFINES_LENGTH];
-    gi_write_shares_defines(frame, shares);
+    char extra[GI_VISIBILITY_DEFINES_LENGTH + 16], visibility[GI_VISIBILITY_DEFINES_LENGTH];
+    gi_write_visibility_defines(frame, visibility);
     snprintf(extra, sizeof(extra), "FIRST %d\n%s",
-             frame->params->debug_view == DEBUG_VIEW_DIRECT ? 2 : first, shares);
+             frame->params->debug_view == DEBUG_VIEW_DIRECT ? 2 : first, visibility);
     const struct gpu_program *program =
         frame->volume ? voxel_program(frame, pass, "light/direct_light.comp", extra, out_error)
                       : pass_program(frame, pass, "light/direct_light.comp", extra, out_error);

@@ -42,11 +42,12 @@ bool passes_execute(struct frame *frame, struct error *out_error)
     gpu_timer_begin_frame(view->timer);
     for (uint32_t i = 0; i < PASS_COUNT; i++) {
         const struct pass *pass = all_passes[i];
-        const char *reason =
-            frame->reference_picture && !pass->shows_reference ? "the reference's picture is shown"
-            : frame->quiet && !pass->gathers ? "light settles; the picture is that of before"
-            : pass->skip_reason              ? pass->skip_reason(frame)
-                                             : NULL;
+        const char *reason = frame->reference_picture && !pass->shows_reference
+                                 ? "the reference's picture is shown"
+                             : frame->accumulate_only && !pass->runs_while_accumulating
+                                 ? "light settles; the picture is that of before"
+                             : pass->skip_reason ? pass->skip_reason(frame)
+                                                 : NULL;
         view->pass_skip_reasons[i] = reason;
         if (reason)
             continue;
@@ -67,7 +68,7 @@ const struct gpu_program *pass_program(const struct frame *frame, const struct p
                                        struct error *out_error)
 {
     char defines[1024];
-    effects_write_defines(frame->plan.bits, pass->effects_used, frame->resident, defines,
+    effects_write_defines(frame->plan.bits, pass->effects_used, frame->gpu_scene, defines,
                           sizeof(defines));
     size_t used = 0;
     while (defines[used])

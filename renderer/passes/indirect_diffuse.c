@@ -15,23 +15,23 @@ static const char *indirect_diffuse_skip_reason(const struct frame *frame)
     return shown ? NULL : "the debug view shows none";
 }
 
-static bool gather_by_rays(const struct frame *frame, struct error *out_error)
+static bool trace_pixel_rays(const struct frame *frame, struct error *out_error)
 {
-    const struct gpu_program *program = hit_program(frame, "gi/ray_gather.comp", out_error);
+    const struct gpu_program *program = hit_program(frame, "gi/ray_diffuse.comp", out_error);
     if (!program)
         return false;
     uint32_t pixels = gi_gather_step(frame) * GROUP_EDGE;
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
                  (frame->height + pixels - 1) / pixels, 1);
     gpu_barrier(frame->gpu);
-    return filter_gathered(frame, false, out_error);
+    return filter_accumulation(frame, false, out_error);
 }
 
-static bool gather_at_pixels(const struct frame *frame, const struct pass *pass, const char *extra,
-                             struct error *out_error)
+static bool trace_pixel_cones(const struct frame *frame, const struct pass *pass, const char *extra,
+                              struct error *out_error)
 {
     const struct gpu_program *program =
-        voxel_program(frame, pass, "gi/pixel_gather.comp", extra, out_error);
+        voxel_program(frame, pass, "gi/pixel_cones.comp", extra, out_error);
     if (!program)
         return false;
     uint32_t pixels = gi_gather_step(frame) * GROUP_EDGE;
@@ -49,11 +49,11 @@ static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
     char extra[64];
     snprintf(extra, sizeof(extra), "CACHED %d\nGATHER_STEP %u\nFILTERED %d\nALONE %d\n", cached,
              gi_gather_step(frame), rays, alone);
-    if (!cached && frame->gather_now &&
-        !(rays ? gather_by_rays(frame, out_error)
-               : gather_at_pixels(frame, pass, extra, out_error)))
+    if (!cached && frame->accumulate &&
+        !(rays ? trace_pixel_rays(frame, out_error)
+               : trace_pixel_cones(frame, pass, extra, out_error)))
         return false;
-    if (frame->quiet)
+    if (frame->accumulate_only)
         return true;
     const struct gpu_program *program =
         voxel_program(frame, pass, "gi/indirect_diffuse.comp", extra, out_error);
@@ -70,7 +70,7 @@ const struct pass indirect_diffuse_pass = {
     .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                     EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) |
                     EFFECT_BIT(EFFECT_INDIRECT_SPECULAR),
-    .gathers = true,
+    .runs_while_accumulating = true,
     .use_count = 5,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

@@ -20,7 +20,7 @@ static const char *indirect_specular_skip_reason(const struct frame *frame)
 static bool list_tiles(const struct frame *frame, const struct pass *pass, struct error *out_error)
 {
     const struct gpu_program *list =
-        voxel_program(frame, pass, "gi/glossy_tiles.comp", "", out_error);
+        voxel_program(frame, pass, "gi/specular_tiles.comp", "", out_error);
     if (!list)
         return false;
     static const uint32_t no_groups[4] = {0, 1, 1, 0};
@@ -30,17 +30,18 @@ static bool list_tiles(const struct frame *frame, const struct pass *pass, struc
     return true;
 }
 
-static bool gather_by_rays(const struct frame *frame, struct error *out_error)
+static bool trace_pixel_rays(const struct frame *frame, struct error *out_error)
 {
-    const struct gpu_program *program = hit_program(frame, "gi/ray_gloss.comp", out_error);
+    const struct gpu_program *program = hit_program(frame, "gi/ray_specular.comp", out_error);
     if (!program)
         return false;
     gpu_dispatch_indirect(frame->gpu, program, frame->view->glossy_tiles, 0);
     gpu_barrier(frame->gpu);
-    return filter_gathered(frame, true, out_error);
+    return filter_accumulation(frame, true, out_error);
 }
 
-static bool add_gloss(const struct frame *frame, const struct pass *pass, struct error *out_error)
+static bool add_specular_lobe(const struct frame *frame, const struct pass *pass,
+                              struct error *out_error)
 {
     bool rays = frame->gather == GATHER_RAYS;
     char extra[48];
@@ -60,12 +61,14 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
                                   struct error *out_error)
 {
     struct view *view = frame->view;
-    bool gathers = frame->gather == GATHER_RAYS && frame->gather_now;
-    bool tiles_known = frame->quiet && frame->still_count != 1; // from the first of the pictures
+    bool runs_while_accumulating = frame->gather == GATHER_RAYS && frame->accumulate;
+    bool tiles_known =
+        frame->accumulate_only && frame->accumulated_samples != 1; // from the first of the pictures
     gpu_bind_storage(frame->gpu, BIND_TILES, view->glossy_tiles);
-    bool done = (frame->quiet && !gathers) || tiles_known || list_tiles(frame, pass, out_error);
-    done = done && (!gathers || gather_by_rays(frame, out_error));
-    done = done && (frame->quiet || add_gloss(frame, pass, out_error));
+    bool done = (frame->accumulate_only && !runs_while_accumulating) || tiles_known ||
+                list_tiles(frame, pass, out_error);
+    done = done && (!runs_while_accumulating || trace_pixel_rays(frame, out_error));
+    done = done && (frame->accumulate_only || add_specular_lobe(frame, pass, out_error));
     gpu_bind_storage(frame->gpu, BIND_TILES, view->transparent_tiles);
     return done;
 }
@@ -73,7 +76,7 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
 const struct pass indirect_specular_pass = {
     .name = "indirect_specular",
     .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT),
-    .gathers = true,
+    .runs_while_accumulating = true,
     .use_count = 4,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_DEPTH, ACCESS_READ},

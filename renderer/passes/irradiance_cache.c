@@ -46,7 +46,7 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
     gpu_barrier(frame->gpu);
     gpu_dispatch(frame->gpu, arguments, 1, 1, 1);
     gpu_barrier(frame->gpu);
-    gpu_dispatch_indirect(frame->gpu, gather, volume->counters, COUNTER_GATHER * 4);
+    gpu_dispatch_indirect(frame->gpu, gather, volume->counters, COUNTER_LOOKUP * 4);
     gpu_barrier(frame->gpu);
     gpu_dispatch_indirect(frame->gpu, march, volume->counters, COUNTER_MARCH * 4);
     gpu_barrier(frame->gpu);
@@ -59,7 +59,7 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
 const struct pass irradiance_cache_pass = {
     .name = "irradiance_cache",
     .effects_used = EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS),
-    .gathers = true,
+    .runs_while_accumulating = true,
     .use_count = 4,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
              {RESOURCE_VOXELS, ACCESS_READ},

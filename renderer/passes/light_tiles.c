@@ -1,4 +1,4 @@
-// Finds which lamps of limited range reach which tile of the screen.
+// Finds which lights of limited range reach which tile of the screen.
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
 

@@ -8,7 +8,7 @@
 #include "renderer/gpu/gpu.h"
 #include "renderer/renderer.h"
 
-struct resident;
+struct gpu_scene;
 struct view;
 
 enum resource {
@@ -39,7 +39,7 @@ struct resource_use {
 // One frame of one view on its way through the passes.
 struct frame {
     struct gpu *gpu;
-    struct resident *resident;
+    struct gpu_scene *gpu_scene;
     struct view *view;
     const struct frame_params *params;
     struct view_camera camera; // that of `params`, but placed about the resident's origin
@@ -53,11 +53,11 @@ struct frame {
     struct voxel_volume *volume; // NULL where no effect needs voxels
     struct voxel_light_work light_work;
     enum gather_mode gather;
-    bool gather_now;                // pixels' cones are due; else what they found is still good
+    bool accumulate;                // pixels' cones are due; else what they found is still good
     bool unchanged;                 // parameters and document are those of the frame before
-    bool quiet;                     // adds light or rays to those of before: the picture stays
-    uint32_t still_frames;          // pictures to average
-    uint32_t still_count;           // this one and those before it
+    bool accumulate_only;           // adds light or rays to those of before: the picture stays
+    uint32_t accumulation_target;   // pictures to average
+    uint32_t accumulated_samples;   // this one and those before it
     const float *reference_picture; // 4 floats a pixel, shown instead; NULL for none
 };
 
@@ -66,7 +66,7 @@ static inline bool frame_has(const struct frame *frame, enum effect effect)
     return (frame->plan.bits & EFFECT_BIT(effect)) != 0;
 }
 
-// Whether cones towards lamps that have a size tell their shadows.
+// Whether cones towards lights that have a size tell their shadows.
 static inline bool frame_has_cone_shadows(const struct frame *frame)
 {
     return frame->volume && frame_has(frame, EFFECT_SOFT_SHADOWS) && frame->quality->cone_shadows;
@@ -99,8 +99,8 @@ struct pass {
     // NULL if the pass must run, else the reason in words why it need not.
     const char *(*skip_reason)(const struct frame *frame);
 
-    bool shows_reference; // runs where a reference's picture is shown, too
-    bool gathers;         // runs in quiet frames, too
+    bool shows_reference;         // runs where a reference's picture is shown, too
+    bool runs_while_accumulating; // runs in quiet frames, too
 
     // Binds, dispatches, returns; allocates nothing. False with a message if a shader fails.
     bool (*run)(struct frame *frame, const struct pass *pass, struct error *out_error);
@@ -138,10 +138,10 @@ const struct gpu_program *hit_program(const struct frame *frame, const char *sha
 
 // Averages over neighbours what rays from pixels have found, irradiance or what lobes mirror; not
 // in quiet frames.
-bool filter_gathered(const struct frame *frame, bool gloss, struct error *out_error);
+bool filter_accumulation(const struct frame *frame, bool specular, struct error *out_error);
 
 // Works out which cascades of the sun must be drawn; before the passes run.
-void shadow_map_place_cascades(struct frame *frame);
+void shadow_map_fit_cascades(struct frame *frame);
 
 // Tells the shaders where the cascades lie in the map of the whole scene.
 struct frame_block;

@@ -10,7 +10,7 @@
 static const struct pass shading_of_hits = {
     .effects_used = (SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ALPHA_MASK) |
                      EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
-                     EFFECT_BIT(EFFECT_BOUNCE)) &
+                     EFFECT_BIT(EFFECT_MULTI_BOUNCE)) &
                     ~EFFECT_BIT(EFFECT_LIGHT_TILES),
 };
 
@@ -19,19 +19,19 @@ const struct gpu_program *hit_program(const struct frame *frame, const char *sha
 {
     char extra[128];
     snprintf(extra, sizeof(extra), "GATHER_STEP %u\nLIGHT_TILES 0\nSHADOW_TAPS 1u\nLIT_HITS %d\n",
-             gi_gather_step(frame), frame->resident->counts.lights <= GI_MOST_LIGHTS_OF_RAYS);
+             gi_gather_step(frame), frame->gpu_scene->counts.lights <= GI_MAX_RAY_LIGHTS);
     return voxel_program(frame, &shading_of_hits, shader, extra, out_error);
 }
 
-bool filter_gathered(const struct frame *frame, bool gloss, struct error *out_error)
+bool filter_accumulation(const struct frame *frame, bool specular, struct error *out_error)
 {
-    if (frame->quiet)
+    if (frame->accumulate_only)
         return true;
     char extra[48];
     uint32_t step = gi_gather_step(frame), pixels = step * GROUP_EDGE;
-    snprintf(extra, sizeof(extra), "GATHER_STEP %u\nGLOSS %d\n", step, gloss);
+    snprintf(extra, sizeof(extra), "GATHER_STEP %u\nGLOSS %d\n", step, specular);
     const struct gpu_program *program =
-        gpu_program_get(frame->gpu, "gi/gather_filter.comp", extra, out_error);
+        gpu_program_get(frame->gpu, "gi/accumulation_filter.comp", extra, out_error);
     if (!program)
         return false;
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,

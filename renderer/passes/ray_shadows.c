@@ -1,4 +1,4 @@
-// Shadows of lamps that have a size, by rays from pixels; without them cones or the map tell.
+// Shadows of lights that have a size, by rays from pixels; without them cones or the map tell.
 #include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
 #include "renderer/view.h"
@@ -11,13 +11,13 @@ static const char *ray_shadows_skip_reason(const struct frame *frame)
         return "the debug view shows no light";
     if (!gi_traces_shadows(frame))
         return "rays do not gather yet, or lamps are too many for them";
-    return frame->gather_now ? NULL : "rays are enough";
+    return frame->accumulate ? NULL : "rays are enough";
 }
 
 static bool ray_shadows_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
-    char extra[GI_SHARES_DEFINES_LENGTH];
-    gi_write_shares_defines(frame, extra);
+    char extra[GI_VISIBILITY_DEFINES_LENGTH];
+    gi_write_visibility_defines(frame, extra);
     const struct gpu_program *program =
         voxel_program(frame, pass, "gi/ray_shadows.comp", extra, out_error);
     if (!program)
@@ -32,7 +32,7 @@ const struct pass ray_shadows_pass = {
     .name = "ray_shadows",
     .effects_used =
         (DIRECT_LIGHT_EFFECTS & ~EFFECT_BIT(EFFECT_LIGHT_TILES)) | EFFECT_BIT(EFFECT_ALPHA_MASK),
-    .gathers = true,
+    .runs_while_accumulating = true,
     .use_count = 2,
     .uses = {{RESOURCE_GBUFFER, ACCESS_READ}, {RESOURCE_DEPTH, ACCESS_READ}},
     .skip_reason = ray_shadows_skip_reason,

@@ -21,7 +21,7 @@ static bool readback_run(struct frame *frame, const struct pass *pass, struct er
 
 const struct pass readback_pass = {
     .name = "readback",
-    .gathers = true,
+    .runs_while_accumulating = true,
     .use_count = 2,
     .uses = {{RESOURCE_OUTPUT, ACCESS_READ}, {RESOURCE_EXPOSURE, ACCESS_READ}},
     .run = readback_run,

@@ -1,4 +1,4 @@
-// Renders the depth maps of lamps whose view or casters changed, and the sun's cascades around the
+// Renders the depth maps of lights whose view or casters changed, and the sun's cascades around the
 // camera when it has left their margin.
 #include <math.h>
 #include <string.h>
@@ -14,13 +14,13 @@
 #define BIAS_SLOPE    -2.5f
 #define BIAS_CONSTANT -2.0f
 
-static void place_cascade(struct frame *frame, uint32_t i)
+static void fit_cascade(struct frame *frame, uint32_t i)
 {
     struct view *view = frame->view;
-    const struct resident *resident = frame->resident;
+    const struct gpu_scene *gpu_scene = frame->gpu_scene;
     // Smallest first: with n cascades, cascade i spans the scene / ratio^(n - i).
     float half =
-        0.5f * resident->diagonal_m * powf(CASCADE_RATIO, -(float)(view->cascade_count - i));
+        0.5f * gpu_scene->diagonal_m * powf(CASCADE_RATIO, -(float)(view->cascade_count - i));
     float step = half * CASCADE_MARGIN;
     vec3 center;
     for (int axis = 0; axis < 3; axis++)
@@ -28,7 +28,7 @@ static void place_cascade(struct frame *frame, uint32_t i)
     float moved = 0.0f;
     for (int axis = 0; axis < 3; axis++)
         moved = fmaxf(moved, fabsf(frame->camera.eye[axis] - view->cascade_center[i][axis]));
-    if (view->cascade_placed[i] && moved <= 2.0f * step)
+    if (view->cascade_fitted[i] && moved <= 2.0f * step)
         return;
     memcpy(view->cascade_center[i], center, sizeof(center));
     vec3 low, high;
@@ -36,15 +36,16 @@ static void place_cascade(struct frame *frame, uint32_t i)
         low[axis] = center[axis] - half;
     for (int axis = 0; axis < 3; axis++)
         high[axis] = center[axis] + half;
-    resident_directional_view(resident, resident->directional_axis, low, high, &view->cascades[i]);
-    view->cascade_placed[i] = true;
+    gpu_scene_directional_view(gpu_scene, gpu_scene->directional_axis, low, high,
+                               &view->cascades[i]);
+    view->cascade_fitted[i] = true;
     view->cascade_stale[i] = true;
 }
 
 static bool any_stale(const struct frame *frame)
 {
-    for (uint32_t i = 0; i < frame->resident->counts.shadow_layers; i++)
-        if (frame->resident->shadow_stale[i])
+    for (uint32_t i = 0; i < frame->gpu_scene->counts.shadow_layers; i++)
+        if (frame->gpu_scene->shadow_stale[i])
             return true;
     for (uint32_t i = 0; i < frame->view->cascade_count; i++)
         if (frame->view->cascade_stale[i])
@@ -52,26 +53,27 @@ static bool any_stale(const struct frame *frame)
     return false;
 }
 
-void shadow_map_place_cascades(struct frame *frame)
+void shadow_map_fit_cascades(struct frame *frame)
 {
     struct view *view = frame->view;
-    struct resident *resident = frame->resident;
-    uint64_t epoch = shadow_map_epoch(resident->shadow_map);
-    bool lost = epoch != resident->shadow_epoch_seen;
+    struct gpu_scene *gpu_scene = frame->gpu_scene;
+    uint64_t epoch = shadow_map_epoch(gpu_scene->shadow_map);
+    bool lost = epoch != gpu_scene->shadow_epoch_seen;
     if (lost)
-        memset(resident->shadow_stale, true, sizeof(resident->shadow_stale));
-    resident->shadow_epoch_seen = epoch;
+        memset(gpu_scene->shadow_stale, true, sizeof(gpu_scene->shadow_stale));
+    gpu_scene->shadow_epoch_seen = epoch;
     // Depth that is lost, such as because another view takes cascades, is drawn again where it was.
     if (view->shadow_epoch_seen != epoch)
         memset(view->cascade_stale, true, sizeof(view->cascade_stale));
-    if (view->shadow_revision_seen != resident->shadow_revision)
-        memset(view->cascade_placed, false, sizeof(view->cascade_placed));
-    view->shadow_revision_seen = resident->shadow_revision;
+    if (view->shadow_revision_seen != gpu_scene->shadow_revision)
+        memset(view->cascade_fitted, false, sizeof(view->cascade_fitted));
+    view->shadow_revision_seen = gpu_scene->shadow_revision;
     view->shadow_epoch_seen = epoch;
     for (uint32_t i = 0; i < view->cascade_count; i++)
-        place_cascade(frame, i);
-    gpu_buffer_write(view->shadow_views, 0, sizeof(resident->shadow_views), resident->shadow_views);
-    gpu_buffer_write(view->shadow_views, sizeof(resident->shadow_views), sizeof(view->cascades),
+        fit_cascade(frame, i);
+    gpu_buffer_write(view->shadow_views, 0, sizeof(gpu_scene->shadow_views),
+                     gpu_scene->shadow_views);
+    gpu_buffer_write(view->shadow_views, sizeof(gpu_scene->shadow_views), sizeof(view->cascades),
                      view->cascades);
 }
 
@@ -79,11 +81,11 @@ void shadow_map_place_cascades(struct frame *frame)
 void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *block)
 {
     const struct view *view = frame->view;
-    uint32_t sun = frame->resident->sun_shadow_view;
+    uint32_t sun = frame->gpu_scene->sun_shadow_view;
     block->sun_shadow_view = sun;
     for (uint32_t i = 0; i < view->cascade_count; i++) {
         mat4 scene, cascade;
-        memcpy(scene, frame->resident->shadow_views[sun].clip_from_world, sizeof(scene));
+        memcpy(scene, frame->gpu_scene->shadow_views[sun].clip_from_world, sizeof(scene));
         memcpy(cascade, view->cascades[i].clip_from_world, sizeof(cascade));
         for (int row = 0; row < 3; row++) {
             // The rows are parallel: compare them where the scene's is largest.
@@ -99,7 +101,7 @@ void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *b
                 row == 2 ? offset : 0.5f - 0.5f * scale + (row == 0 ? 0.5f : -0.5f) * offset;
         }
         block->cascades[i].layer =
-            (float)shadow_map_cascade_layer(frame->resident->shadow_map, view->cascade_numbers[i]);
+            (float)shadow_map_cascade_layer(frame->gpu_scene->shadow_map, view->cascade_numbers[i]);
     }
 }
 
@@ -107,7 +109,7 @@ static const char *shadow_map_skip_reason(const struct frame *frame)
 {
     if (!(frame->plan.bits & EFFECT_BIT(EFFECT_SHADOWS)))
         return "no light casts a shadow";
-    if (frame->resident->counts.lit_materials == 0 && !frame->params->settings.force_all_effects)
+    if (frame->gpu_scene->counts.lit_materials == 0 && !frame->params->settings.force_all_effects)
         return "every surface is unlit";
     return any_stale(frame) ? NULL : "lights and casters unchanged";
 }
@@ -117,7 +119,7 @@ static bool draw_layer(struct frame *frame, const struct pass *pass,
                        struct error *out_error)
 {
     struct draw_list *draws = &frame->view->shadow_draws;
-    draw_list_fill(draws, frame->resident, clip_from_world, NULL);
+    draw_list_fill(draws, frame->gpu_scene, clip_from_world, NULL);
     gpu_begin_raster(frame->gpu, &(struct gpu_raster_params){
                                      .framebuffer = framebuffer,
                                      .width = SHADOW_MAP_EDGE,
@@ -139,7 +141,7 @@ static bool draw_layer(struct frame *frame, const struct pass *pass,
             pass_program(frame, pass, "visibility/visibility", kinds[i].defines, out_error);
         if (!program)
             return false;
-        draw_list_draw(draws, frame->resident, program, kinds[i].kind, false);
+        draw_list_draw(draws, frame->gpu_scene, program, kinds[i].kind, false);
     }
     gpu_end_raster(frame->gpu);
     return true;
@@ -147,22 +149,22 @@ static bool draw_layer(struct frame *frame, const struct pass *pass,
 
 static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
-    struct resident *resident = frame->resident;
+    struct gpu_scene *gpu_scene = frame->gpu_scene;
     struct view *view = frame->view;
-    for (uint32_t i = 0; i < resident->counts.shadow_layers; i++) {
-        if (!resident->shadow_stale[i])
+    for (uint32_t i = 0; i < gpu_scene->counts.shadow_layers; i++) {
+        if (!gpu_scene->shadow_stale[i])
             continue;
-        if (!draw_layer(frame, pass, shadow_map_lamp_framebuffer(resident->shadow_map, i),
-                        resident->shadow_views[i].clip_from_world, out_error))
+        if (!draw_layer(frame, pass, shadow_map_light_framebuffer(gpu_scene->shadow_map, i),
+                        gpu_scene->shadow_views[i].clip_from_world, out_error))
             return false;
-        resident->shadow_stale[i] = false;
+        gpu_scene->shadow_stale[i] = false;
     }
     for (uint32_t i = 0; i < view->cascade_count; i++) {
         if (!view->cascade_stale[i])
             continue;
         if (!draw_layer(
                 frame, pass,
-                shadow_map_cascade_framebuffer(resident->shadow_map, view->cascade_numbers[i]),
+                shadow_map_cascade_framebuffer(gpu_scene->shadow_map, view->cascade_numbers[i]),
                 view->cascades[i].clip_from_world, out_error))
             return false;
         view->cascade_stale[i] = false;

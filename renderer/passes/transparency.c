@@ -39,7 +39,7 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
                                      .height = frame->height,
                                      .depth_test = GPU_DEPTH_GREATER_READ,
                                  });
-    draw_list_draw(&view->draws, frame->resident, list, DRAW_TRANSPARENT, true);
+    draw_list_draw(&view->draws, frame->gpu_scene, list, DRAW_TRANSPARENT, true);
     gpu_end_raster(frame->gpu);
     gpu_barrier(frame->gpu);
     if (frame->params->debug_view == DEBUG_VIEW_TILE_CLASSES)

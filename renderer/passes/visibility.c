@@ -23,13 +23,13 @@ static bool visibility_run(struct frame *frame, const struct pass *pass, struct 
     } kinds[] = {{DRAW_OPAQUE, "ALPHA_MASK 0\nSHADOW_VIEW 0\nLIST 0\n"},
                  {DRAW_MASKED, "ALPHA_MASK 1\nSHADOW_VIEW 0\nLIST 0\n"}};
     for (int i = 0; i < 2; i++) {
-        if (!frame->resident->drawable || !draw_list_has(&view->draws, kinds[i].kind))
+        if (!frame->gpu_scene->drawable || !draw_list_has(&view->draws, kinds[i].kind))
             continue;
         const struct gpu_program *program =
             pass_program(frame, pass, "visibility/visibility", kinds[i].defines, out_error);
         if (!program)
             return false;
-        draw_list_draw(&view->draws, frame->resident, program, kinds[i].kind, true);
+        draw_list_draw(&view->draws, frame->gpu_scene, program, kinds[i].kind, true);
     }
     gpu_end_raster(frame->gpu);
     return true;

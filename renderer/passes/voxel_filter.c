@@ -31,7 +31,7 @@ static bool voxel_filter_run(struct frame *frame, const struct pass *pass, struc
 const struct pass voxel_filter_pass = {
     .name = "voxel_filter",
     .effects_used = EFFECT_BIT(EFFECT_CLIP_LEVELS),
-    .gathers = true,
+    .runs_while_accumulating = true,
     .use_count = 2,
     .uses = {{RESOURCE_VOXELS, ACCESS_READ}, {RESOURCE_VOXEL_RADIANCE, ACCESS_READ_WRITE}},
     .skip_reason = voxel_filter_skip_reason,

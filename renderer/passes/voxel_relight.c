@@ -15,15 +15,15 @@ static const char *voxel_relight_skip_reason(const struct frame *frame)
 static bool voxel_relight_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
     struct voxel_volume *volume = frame->volume;
-    bool feeds = frame_has(frame, EFFECT_BOUNCE) && volume->light.feeds;
+    bool feeds = frame_has(frame, EFFECT_MULTI_BOUNCE) && volume->light.feeds;
     char extra[128];
     snprintf(extra, sizeof(extra),
              "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nTAPS 4\nFEEDBACK %d\nFRESH %d\n", feeds,
              frame->light_work.fresh_only);
     const struct gpu_program *program = voxel_program(
         frame, pass,
-        frame->light_work.direct ? "voxel/voxel_relight.comp" : "voxel/voxel_bounce.comp", extra,
-        out_error);
+        frame->light_work.direct ? "voxel/voxel_relight.comp" : "voxel/voxel_inject_bounce.comp",
+        extra, out_error);
     if (!program)
         return false;
     voxel_volume_choose_levels(volume, frame->light_work.relight_first,
@@ -34,11 +34,11 @@ static bool voxel_relight_run(struct frame *frame, const struct pass *pass, stru
 
 const struct pass voxel_relight_pass = {
     .name = "voxel_relight",
-    .effects_used = EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_FLAT_SHADOWS) |
-                    EFFECT_BIT(EFFECT_CUBE_SHADOWS) | EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) |
+    .effects_used = EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_SINGLE_VIEW_SHADOWS) |
+                    EFFECT_BIT(EFFECT_POINT_SHADOWS) | EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) |
                     EFFECT_BIT(EFFECT_AREA_LIGHTS) | EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) |
                     EFFECT_BIT(EFFECT_VOXEL_COLORS),
-    .gathers = true,
+    .runs_while_accumulating = true,
     // The cache of irradiance is read, too, as an earlier frame left it.
     .use_count = 3,
     .uses = {{RESOURCE_VOXELS, ACCESS_READ},

@@ -32,7 +32,7 @@ static void dispatch_rows(const struct frame *frame, const struct gpu_program *p
 }
 
 struct voxelize_programs {
-    const struct gpu_program *clear, *small, *large, *cells, *mend, *list, *arguments, *tiles;
+    const struct gpu_program *clear, *small, *large, *cells, *repair, *list, *arguments, *tiles;
 };
 
 static bool get_programs(const struct frame *frame, const struct pass *pass,
@@ -46,7 +46,7 @@ static bool get_programs(const struct frame *frame, const struct pass *pass,
         {&programs->small, "voxel/voxelize.comp", "LARGE 0\n"},
         {&programs->large, "voxel/voxelize.comp", "LARGE 1\n"},
         {&programs->cells, "voxel/voxel_cells.comp", ""},
-        {&programs->mend, "voxel/voxel_lists.comp", "STAGE 0\n"},
+        {&programs->repair, "voxel/voxel_lists.comp", "STAGE 0\n"},
         {&programs->list, "voxel/voxel_lists.comp", "STAGE 1\n"},
         {&programs->arguments, "voxel/voxel_lists.comp", "STAGE 2\n"},
         {&programs->tiles, "voxel/voxel_lists.comp", "STAGE 3\n"},
@@ -71,7 +71,7 @@ static void empty_regions(const struct frame *frame, const struct voxelize_progr
         gpu_barrier(frame->gpu);
     } else {
         // Lighting may have taken more face records than were free.
-        gpu_dispatch(frame->gpu, programs->mend, 1, 1, 1);
+        gpu_dispatch(frame->gpu, programs->repair, 1, 1, 1);
         gpu_barrier(frame->gpu);
         dispatch_rows(frame, programs->clear, groups_of(volume->region_voxels, REGION_RUN));
     }
@@ -81,7 +81,7 @@ static void empty_regions(const struct frame *frame, const struct voxelize_progr
 static void enter_triangles(const struct frame *frame, const struct voxelize_programs *programs)
 {
     struct voxel_volume *volume = frame->volume;
-    dispatch_rows(frame, programs->small, volume->chunk_count);
+    dispatch_rows(frame, programs->small, volume->batch_count);
     gpu_dispatch(frame->gpu, programs->tiles, 1, 1, 1);
     gpu_barrier(frame->gpu);
     gpu_dispatch_indirect(frame->gpu, programs->large, volume->counters, COUNTER_TILES * 4);
@@ -92,9 +92,9 @@ static void list_cells(const struct frame *frame, const struct voxelize_programs
 {
     struct voxel_volume *volume = frame->volume;
     dispatch_rows(frame, programs->cells, groups_of(volume->region_voxels, REGION_RUN));
-    gpu_dispatch(frame->gpu, programs->mend, 1, 1, 1);
+    gpu_dispatch(frame->gpu, programs->repair, 1, 1, 1);
     gpu_barrier(frame->gpu);
-    if (volume->dirty[volume->lit_levels - 1].count == 0)
+    if (volume->dirty[volume->cell_level_count - 1].count == 0)
         return; // mips of the coarsest level are as they were
     size_t first = volume->list_words - volume->mip_words;
     gpu_buffer_fill(volume->lists, first * 4, volume->mip_words * 4, 0);
@@ -118,7 +118,7 @@ static bool voxelize_run(struct frame *frame, const struct pass *pass, struct er
             return true;
         }
         if (room == VOXEL_ROOM_NONE ||
-            !voxel_volume_update(volume, frame->resident, frame->camera.eye))
+            !voxel_volume_update(volume, frame->gpu_scene, frame->camera.eye))
             break;
         voxel_volume_bind(volume);
     }
@@ -130,7 +130,7 @@ static bool voxelize_run(struct frame *frame, const struct pass *pass, struct er
 const struct pass voxelize_pass = {
     .name = "voxelize",
     .effects_used = SURFACE_EFFECTS | EFFECT_BIT(EFFECT_VOXEL_COLORS),
-    .gathers = true,
+    .runs_while_accumulating = true,
     .use_count = 1,
     .uses = {{RESOURCE_VOXELS, ACCESS_WRITE}},
     .skip_reason = voxelize_skip_reason,

@@ -34,7 +34,7 @@ static float3 dielectric_fresnel(const struct bsdf *bsdf, float v_h)
     return schlick(bsdf->f0, splat3(bsdf->f90), v_h);
 }
 
-static float3 gloss_fresnel(const struct bsdf *bsdf, float3 dielectric, float v_h)
+static float3 specular_fresnel(const struct bsdf *bsdf, float3 dielectric, float v_h)
 {
     if (bsdf->metallic == 0.0f)
         return dielectric;
@@ -47,22 +47,22 @@ static void choose_probabilities(struct bsdf *bsdf, enum bsdf_lobes lobes)
 {
     float3 dielectric = dielectric_fresnel(bsdf, bsdf->n_v);
     float3 through = splat3(1.0f) - dielectric;
-    float gloss = max1(max3(gloss_fresnel(bsdf, dielectric, bsdf->n_v)), 1e-6f);
+    float specular = max1(max3(specular_fresnel(bsdf, dielectric, bsdf->n_v)), 1e-6f);
     float diffuse = max3(bsdf->diffuse) * (1.0f - max3(dielectric));
     float transmit = max3(bsdf->tint) * max3(through);
     diffuse = max3(bsdf->diffuse) > 0.0f ? max1(diffuse, 1e-6f) : 0.0f;
     transmit = max3(bsdf->tint) > 0.0f ? max1(transmit, 1e-6f) : 0.0f;
     if (lobes == BSDF_TRANSMISSION)
-        gloss = diffuse = 0.0f;
-    float sum = gloss + diffuse + transmit;
+        specular = diffuse = 0.0f;
+    float sum = specular + diffuse + transmit;
     if (!(sum > 0.0f))
         return;
-    float least = MIN_PROBABILITY * sum;
-    gloss = gloss > 0.0f ? max1(gloss, least) : 0.0f;
-    diffuse = diffuse > 0.0f ? max1(diffuse, least) : 0.0f;
-    transmit = transmit > 0.0f ? max1(transmit, least) : 0.0f;
-    float scale = 1.0f / (gloss + diffuse + transmit);
-    bsdf->p_gloss = gloss * scale;
+    float minimum = MIN_PROBABILITY * sum;
+    specular = specular > 0.0f ? max1(specular, minimum) : 0.0f;
+    diffuse = diffuse > 0.0f ? max1(diffuse, minimum) : 0.0f;
+    transmit = transmit > 0.0f ? max1(transmit, minimum) : 0.0f;
+    float scale = 1.0f / (specular + diffuse + transmit);
+    bsdf->p_specular = specular * scale;
     bsdf->p_diffuse = diffuse * scale;
     bsdf->p_transmit = transmit * scale;
 }
@@ -94,11 +94,11 @@ void bsdf_init(struct bsdf *bsdf, const struct surface *surface, float eta, enum
         // A body is tinted once: where light enters, or where it would have.
         bsdf->tint =
             (surface->is_front ? surface->base_color : splat3(1.0f)) * surface->transmission;
-    bool has_gloss = surface->metallic > 0.0f || surface->f90 > 0.0f || max3(surface->f0) > 0.0f ||
-                     material->refracts;
+    bool has_specular = surface->metallic > 0.0f || surface->f90 > 0.0f ||
+                        max3(surface->f0) > 0.0f || material->refracts;
     if (material->blinn_phong)
         bsdf->exponent = exponent_of(bsdf->alpha);
-    if (!has_gloss) {
+    if (!has_specular) {
         bsdf->p_diffuse = lobes == BSDF_ALL && max3(bsdf->diffuse) > 0.0f ? 1.0f : 0.0f;
         return;
     }
@@ -123,24 +123,24 @@ static float distribution(const struct bsdf *bsdf, float3 half, float n_h)
     return a2 / (PI * d * d);
 }
 
-static void add_gloss(const struct bsdf *bsdf, float3 half, float v_h, float n_l,
-                      struct scattering *scattering, float3 dielectric)
+static void add_specular_lobe(const struct bsdf *bsdf, float3 half, float v_h, float n_l,
+                              struct scattering *scattering, float3 dielectric)
 {
     float n_h = clamp01(dot3(bsdf->normal, half));
-    float3 fresnel = gloss_fresnel(bsdf, dielectric, v_h);
+    float3 fresnel = specular_fresnel(bsdf, dielectric, v_h);
     if (bsdf->exponent > 0.0f) {
         // Normalised as Akenine-Moeller et al., Real-Time Rendering, have it.
         float power = powf(n_h, bsdf->exponent);
-        scattering->share += fresnel * ((bsdf->exponent + 8.0f) / (8.0f * PI) * power * n_l);
-        scattering->density += bsdf->p_gloss * (bsdf->exponent + 1.0f) / (2.0f * PI) * power /
+        scattering->fraction += fresnel * ((bsdf->exponent + 8.0f) / (8.0f * PI) * power * n_l);
+        scattering->density += bsdf->p_specular * (bsdf->exponent + 1.0f) / (2.0f * PI) * power /
                                (4.0f * max1(v_h, 1e-6f));
         return;
     }
     float d = distribution(bsdf, half, n_h) / (4.0f * bsdf->n_v);
     float lambda_l = smith_lambda(n_l, bsdf->alpha);
     // Height-correlated masking and shadowing (Heitz 2014); sampled by visible normals.
-    scattering->share += fresnel * (d / (1.0f + bsdf->lambda_v + lambda_l));
-    scattering->density += bsdf->p_gloss * d / (1.0f + bsdf->lambda_v);
+    scattering->fraction += fresnel * (d / (1.0f + bsdf->lambda_v + lambda_l));
+    scattering->density += bsdf->p_specular * d / (1.0f + bsdf->lambda_v);
 }
 
 static bool evaluate_transmission(const struct bsdf *bsdf, float3 direction, float n_l,
@@ -161,7 +161,7 @@ static bool evaluate_transmission(const struct bsdf *bsdf, float3 direction, flo
                     -l_h / max1(bend * bend, 1e-20f);
     float3 kept = splat3(1.0f) - dielectric_fresnel(bsdf, v_h);
     float masking = 1.0f / (1.0f + smith_lambda(-n_l, bsdf->alpha));
-    out_scattering->share = bsdf->tint * kept * (visible * masking);
+    out_scattering->fraction = bsdf->tint * kept * (visible * masking);
     out_scattering->density = bsdf->p_transmit * visible;
     return true;
 }
@@ -172,16 +172,16 @@ bool bsdf_evaluate(const struct bsdf *bsdf, float3 direction, struct scattering 
     float n_l = dot3(bsdf->normal, direction);
     if (dot3(bsdf->geometric_normal, direction) <= 0.0f)
         return evaluate_transmission(bsdf, direction, n_l, out_scattering);
-    if (!(n_l > 0.0f) || bsdf->p_gloss + bsdf->p_diffuse == 0.0f)
+    if (!(n_l > 0.0f) || bsdf->p_specular + bsdf->p_diffuse == 0.0f)
         return false;
     out_scattering->density = bsdf->p_diffuse * n_l / PI;
-    out_scattering->share = bsdf->diffuse * (n_l / PI);
-    if (bsdf->p_gloss > 0.0f) {
+    out_scattering->fraction = bsdf->diffuse * (n_l / PI);
+    if (bsdf->p_specular > 0.0f) {
         float3 half = normalize3(direction + bsdf->view);
         float v_h = clamp01(dot3(bsdf->view, half));
         float3 dielectric = dielectric_fresnel(bsdf, v_h);
-        out_scattering->share *= 1.0f - max3(dielectric);
-        add_gloss(bsdf, half, v_h, n_l, out_scattering, dielectric);
+        out_scattering->fraction *= 1.0f - max3(dielectric);
+        add_specular_lobe(bsdf, half, v_h, n_l, out_scattering, dielectric);
     }
     return true;
 }
@@ -219,7 +219,7 @@ static float3 sample_half(const struct bsdf *bsdf, const float u[2])
 bool bsdf_sample(const struct bsdf *bsdf, float choice, const float u[2], float3 *out_direction,
                  struct scattering *out_scattering)
 {
-    bool transmits = choice >= bsdf->p_diffuse + bsdf->p_gloss;
+    bool transmits = choice >= bsdf->p_diffuse + bsdf->p_specular;
     if (choice < bsdf->p_diffuse) {
         float3 x, y;
         basis3(bsdf->normal, &x, &y);

@@ -23,7 +23,7 @@ struct bsdf {
     float eta;   // index of refraction on the viewer's side over that beyond
     bool bends;  // eta matters to Fresnel, too
     // Probabilities of following each lobe.
-    float p_diffuse, p_gloss, p_transmit;
+    float p_diffuse, p_specular, p_transmit;
 };
 
 enum bsdf_lobes { BSDF_ALL, BSDF_TRANSMISSION };
@@ -35,8 +35,8 @@ void bsdf_init(struct bsdf *bsdf, const struct surface *surface, float eta, enum
 void bsdf_widen(struct bsdf *bsdf, float alpha);
 
 struct scattering {
-    float3 share;  // BSDF times cosine, per steradian
-    float density; // per steradian, of bsdf_sample() choosing this direction
+    float3 fraction; // BSDF times cosine, per steradian
+    float density;   // per steradian, of bsdf_sample() choosing this direction
 };
 
 // For light from `direction` (unit, away from the surface) towards the viewer. False, with all 0,

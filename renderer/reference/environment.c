@@ -7,7 +7,7 @@
 // A gradient sky changes from row to row only.
 #define GRADIENT_ROWS 64u
 // Share of the mean luminance that every cell gets, so that none is left out.
-#define LEAST_SHARE 0.01f
+#define MIN_WEIGHT 0.01f
 // Brightest cell over the mean from which on choosing directions pays.
 #define UNEVEN 4.0f
 #define PI     ((float)M_PI)
@@ -104,7 +104,7 @@ static float cell_solid_angle(const struct environment *environment, uint32_t ro
 }
 
 // Fills the cumulative shares from the cells' luminances, which become densities.
-static void fill_shares(struct environment *environment, float *luminances)
+static void fill_visibility(struct environment *environment, float *luminances)
 {
     uint32_t columns = environment->columns, rows = environment->rows;
     double mean = 0.0, total = 0.0;
@@ -117,13 +117,13 @@ static void fill_shares(struct environment *environment, float *luminances)
         }
     environment->shines = mean > 0.0 && isfinite(mean);
     environment->uneven = brightest > UNEVEN * (float)mean;
-    float least = environment->shines ? LEAST_SHARE * (float)mean : 1.0f;
+    float minimum = environment->shines ? MIN_WEIGHT * (float)mean : 1.0f;
     for (uint32_t row = 0; row < rows; row++) {
         double row_sum = 0.0;
         for (uint32_t column = 0; column < columns; column++) {
             size_t cell = (size_t)row * columns + column;
             environment->densities[cell] =
-                spread_luminance(environment, luminances, column, row) + least;
+                spread_luminance(environment, luminances, column, row) + minimum;
             row_sum += environment->densities[cell];
             environment->column_ends[cell] = (float)row_sum;
         }
@@ -162,7 +162,7 @@ struct environment *environment_create(const struct scene_environment *source)
         luminances[i] =
             cell_luminance(environment, i % environment->columns, i / environment->columns);
     if (done)
-        fill_shares(environment, luminances);
+        fill_visibility(environment, luminances);
     environment->shines = environment->shines && source->intensity > 0.0f;
     free(luminances);
     if (!done)

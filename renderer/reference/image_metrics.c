@@ -3,13 +3,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SSIM_RADIUS   5
-#define SSIM_SIGMA    1.5
-#define SSIM_C1       (0.01 * 0.01) // squares of K1 and K2, for values of 0..1
-#define SSIM_C2       (0.03 * 0.03)
-#define P95           0.95
-#define REL_MSE_SHARE 0.01
-#define CHANNEL_COUNT 3
+#define SSIM_RADIUS      5
+#define SSIM_SIGMA       1.5
+#define SSIM_C1          (0.01 * 0.01) // squares of K1 and K2, for values of 0..1
+#define SSIM_C2          (0.03 * 0.03)
+#define P95              0.95
+#define REL_MSE_FRACTION 0.01
+#define CHANNEL_COUNT    3
 
 const struct image_metric_info image_metric_infos[METRIC_COUNT] = {
     [METRIC_RMSE] = {"rmse", "RMSE", "cd/m^2"},
@@ -80,7 +80,7 @@ static double relative_error(const struct picture *test, const struct picture *r
     double sum = 0.0, floors[CHANNEL_COUNT];
     size_t pixels = picture_pixel_count(test);
     for (int c = 0; c < CHANNEL_COUNT; c++)
-        floors[c] = REL_MSE_SHARE * sums->reference_squared[c] / (double)sums->count;
+        floors[c] = REL_MSE_FRACTION * sums->reference_squared[c] / (double)sums->count;
     for (size_t i = 0; i < pixels; i++) {
         const float *a = test->rgb + 3 * i, *b = reference->rgb + 3 * i;
         if (!pixel_is_finite(a) || !pixel_is_finite(b))
@@ -117,7 +117,7 @@ static bool measure_radiance(const struct picture *test, const struct picture *r
     return true;
 }
 
-static double not_finite_share(const struct picture *picture)
+static double not_finite_fraction(const struct picture *picture)
 {
     size_t pixels = picture_pixel_count(picture), bad = 0;
     for (size_t i = 0; i < pixels; i++)
@@ -258,7 +258,7 @@ bool image_metrics_compute(const struct picture *test, const struct picture *ref
                 measure_radiance(test, reference, metrics.values) &&
                 measure_displayed(test, reference, display, &work, metrics.values);
     if (done) {
-        metrics.values[METRIC_NOT_FINITE] = not_finite_share(test);
+        metrics.values[METRIC_NOT_FINITE] = not_finite_fraction(test);
         *out_metrics = metrics;
     }
     picture_finish(&work.test);

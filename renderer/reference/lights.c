@@ -23,7 +23,7 @@ struct punctual {
     bool casts_shadow;
     float range_m;
     float cone_scale, cone_offset;
-    float least_squared; // nearer than that the inverse square no longer grows
+    float min_squared; // nearer than that the inverse square no longer grows
     float radius_m;
     float power_end; // cumulative share of all lights' luminance
 };
@@ -35,7 +35,7 @@ struct emitter {
     bool both_sides;
     bool is_even;   // else the surface must be looked up
     float per_area; // density of choosing a point of it, per square metre
-    struct ray_crossing place;
+    struct ray_crossing crossing;
 };
 
 struct lights {
@@ -57,7 +57,7 @@ static void add_punctual(struct lights *lights, const struct snapshot *snapshot,
     float inner = cosf(light->inner_cone_rad), outer = cosf(light->outer_cone_rad);
     bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
     float scale = 1.0f / max1(0.001f, inner - outer);
-    float least_m = fminf(LIGHT_MIN_DISTANCE_FRACTION * snapshot->diagonal_m, LIGHT_MIN_DISTANCE_M);
+    float min_m = fminf(LIGHT_MIN_DISTANCE_FRACTION * snapshot->diagonal_m, LIGHT_MIN_DISTANCE_M);
     lights->punctuals[lights->punctual_count++] = (struct punctual){
         .position = load3(position),
         .direction = load3(direction),
@@ -67,7 +67,7 @@ static void add_punctual(struct lights *lights, const struct snapshot *snapshot,
         .range_m = directional ? 0.0f : light->range_m,
         .cone_scale = scale,
         .cone_offset = -outer * scale,
-        .least_squared = least_m * least_m,
+        .min_squared = min_m * min_m,
         .radius_m = directional ? 0.0f : light->radius_m,
     };
 }
@@ -132,7 +132,7 @@ static bool emitter_init(struct emitter *emitter, const struct snapshot *snapsho
         .both_sides = material->double_sided,
         .is_even = !(material->texture_mask & 1u << SCENE_TEXTURE_EMISSIVE) && !material->masked &&
                    !material->blends,
-        .place = {.node = node, .primitive = primitive, .triangle = triangle},
+        .crossing = {.node = node, .primitive = primitive, .triangle = triangle},
     };
     float3 normal = cross3(emitter->edges[0], emitter->edges[1]);
     emitter->normal = normalize3(snapshot->instances[node].mirrored ? -normal : normal);
@@ -194,7 +194,7 @@ static bool find_emitters(struct lights *lights, const struct snapshot *snapshot
     lights->inverse_power = (float)(1.0 / lights->power);
     for (uint32_t i = 0; i < count; i++) {
         struct emitter *emitter = &lights->emitters[i];
-        const struct material *material = snapshot_material(snapshot, emitter->place.primitive);
+        const struct material *material = snapshot_material(snapshot, emitter->crossing.primitive);
         sum += emitter_power(emitter, material);
         lights->power_ends[i] = (float)(sum / lights->power);
         emitter->per_area = material->emitted_luminance * lights->inverse_power;
@@ -265,7 +265,7 @@ static bool evaluate_punctual(const struct punctual *light, float3 position,
         return false;
     out_sample->distance = sqrtf(squared);
     out_sample->direction = to_light * (1.0f / out_sample->distance);
-    float strength = 1.0f / max1(squared, light->least_squared);
+    float strength = 1.0f / max1(squared, light->min_squared);
     if (light->range_m > 0.0f) {
         float ratio = squared / range2;
         strength *= clamp01(1.0f - ratio * ratio);
@@ -301,7 +301,7 @@ static void spread_over_sphere(const struct punctual *light, const float u[2],
 }
 
 // The first of `count` cumulative shares, `stride` floats apart, beyond `u`.
-static uint32_t find_share(const float *ends, size_t stride, uint32_t count, float u)
+static uint32_t find_fraction(const float *ends, size_t stride, uint32_t count, float u)
 {
     // Halves without branches, whose ways nobody could foretell.
     uint32_t first = 0, left = count;
@@ -329,11 +329,11 @@ static uint32_t pick_candidate(const struct lights *lights, uint32_t number, flo
                                float *out_scale)
 {
     float u = ((float)number + offset) / (float)MAX_CANDIDATES;
-    uint32_t id = find_share(&lights->punctuals[0].power_end,
-                             sizeof(struct punctual) / sizeof(float), lights->punctual_count, u);
+    uint32_t id = find_fraction(&lights->punctuals[0].power_end,
+                                sizeof(struct punctual) / sizeof(float), lights->punctual_count, u);
     float begin = id > 0 ? lights->punctuals[id - 1].power_end : 0.0f;
-    float share = max1(lights->punctuals[id].power_end - begin, 1e-30f);
-    *out_scale = 1.0f / (share * (float)MAX_CANDIDATES);
+    float fraction = max1(lights->punctuals[id].power_end - begin, 1e-30f);
+    *out_scale = 1.0f / (fraction * (float)MAX_CANDIDATES);
     return id;
 }
 
@@ -360,14 +360,14 @@ bool lights_sample_punctual(const struct lights *lights, float3 position, float3
         if (!(weight > 0.0f))
             continue;
         total += weight * scale;
-        float share = weight * scale / total;
-        if (left < share) {
+        float fraction = weight * scale / total;
+        if (left < fraction) {
             *out_sample = sample;
             chosen = id;
             chosen_weight = weight;
-            left /= share;
+            left /= fraction;
         } else {
-            left = (left - share) / (1.0f - share);
+            left = (left - fraction) / (1.0f - fraction);
         }
     }
     if (chosen == UINT32_MAX)
@@ -394,7 +394,7 @@ bool lights_sample_emitter(const struct lights *lights, const struct snapshot *s
                            float3 position, float choice, const float u[2],
                            struct light_sample *out_sample)
 {
-    uint32_t id = find_share(lights->power_ends, 1, lights->emitter_count, choice);
+    uint32_t id = find_fraction(lights->power_ends, 1, lights->emitter_count, choice);
     const struct emitter *emitter = &lights->emitters[id];
     float first = u[0];
     if (lights_are_few(lights)) {
@@ -421,11 +421,11 @@ bool lights_sample_emitter(const struct lights *lights, const struct snapshot *s
     };
     if (emitter->is_even)
         return true;
-    struct ray_crossing place = emitter->place;
+    struct ray_crossing crossing = emitter->crossing;
     struct surface surface;
-    place.barycentric[0] = b;
-    place.barycentric[1] = c;
-    if (!surface_init(&surface, snapshot, &place, direction) || surface_is_hole(&surface))
+    crossing.barycentric[0] = b;
+    crossing.barycentric[1] = c;
+    if (!surface_init(&surface, snapshot, &crossing, direction) || surface_is_hole(&surface))
         return false;
     out_sample->light = surface.emission * surface.coverage;
     return max3(out_sample->light) > 0.0f;

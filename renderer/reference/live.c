@@ -166,6 +166,6 @@ float live_reference_convergence(const struct live_reference *live)
         return 0.0f;
     // Noise falls with the root of the samples.
     double ratio = WANTED_NOISE / live->progress.noise;
-    double share = fmax(ratio * ratio, (double)live->shown_samples / WANTED_SAMPLES);
-    return (float)fmin(share, 0.99);
+    double fraction = fmax(ratio * ratio, (double)live->shown_samples / WANTED_SAMPLES);
+    return (float)fmin(fraction, 0.99);
 }

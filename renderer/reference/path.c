@@ -10,8 +10,8 @@
 #define RAY_MAX_DISTANCE 1e15f
 // Rays start this far off a surface: some units in the last place of its coordinates, and of those
 // that its triangle spans.
-#define OFFSET_OF_PLACE 2e-6f
-#define OFFSET_OF_SPAN  4e-7f
+#define OFFSET_OF_POSITION 2e-6f
+#define OFFSET_OF_SPAN     4e-7f
 // Surfaces that one ray may pass through, and vertices that a path may have, unlikely as they are.
 #define MAX_LAYERS   64u
 #define MAX_VERTICES 4096u
@@ -33,8 +33,8 @@
 
 // Random numbers of a vertex; see sampler.h. Pairs come first.
 enum use {
-    USE_LAMP,
-    USE_LAMP_POINT,
+    USE_LIGHT,
+    USE_LIGHT_POINT,
     USE_EMITTER_POINT,
     USE_ENVIRONMENT,
     USE_DIRECTION,
@@ -49,7 +49,7 @@ enum use {
 #define USE_PASSING (1u << 24)
 
 // What a vertex aims at: shadow rays of one kind are cast together.
-enum aim { AIM_LAMP, AIM_EMITTER, AIM_ENVIRONMENT, AIMS };
+enum aim { AIM_LIGHT, AIM_EMITTER, AIM_ENVIRONMENT, AIMS };
 
 struct path {
     const struct path_setup *setup;
@@ -121,7 +121,7 @@ void path_setup_init(struct path_setup *setup, const struct reference_params *pa
     };
     bool goes_on = setup->max_bounces > 0 || setup->rays_find || snapshot->has_bodies;
     if (lights_have_punctual(snapshot->lights))
-        setup->uses |= 1u << USE_LAMP | 1u << USE_LAMP_POINT;
+        setup->uses |= 1u << USE_LIGHT | 1u << USE_LIGHT_POINT;
     setup->uses |= (uint32_t)setup->aims_at_emitters << USE_EMITTER_POINT;
     setup->uses |= (uint32_t)setup->aims_at_environment << USE_ENVIRONMENT;
     setup->uses |= (uint32_t)goes_on << USE_DIRECTION;
@@ -175,7 +175,7 @@ static float3 *layer_of(const struct path *path, uint32_t reflections, bool from
 static float offset_at(float3 position, float span)
 {
     float largest = max1(fabsf(position[0]), max1(fabsf(position[1]), fabsf(position[2])));
-    return OFFSET_OF_PLACE * largest + OFFSET_OF_SPAN * span;
+    return OFFSET_OF_POSITION * largest + OFFSET_OF_SPAN * span;
 }
 
 // The point just off a surface, on its ray's side (1) or beyond (-1).
@@ -289,7 +289,7 @@ static void scatter_light(struct path *path, const struct surface *surface, cons
         if (path->setup->finds_light)
             weight *= power_heuristic(sample->density, scattering.density);
     }
-    float3 light = scattering.share * sample->light * weight;
+    float3 light = scattering.fraction * sample->light * weight;
     if (!(max3(light) > 0.0f))
         return;
     bool reflected = dot3(sample->direction, surface->geometric_normal) > 0.0f;
@@ -304,8 +304,8 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
     struct light_sample sample;
     float u[2], choice[2];
     if (lights_have_punctual(snapshot->lights)) {
-        get_2d(path, USE_LAMP, choice);
-        get_2d(path, USE_LAMP_POINT, u);
+        get_2d(path, USE_LIGHT, choice);
+        get_2d(path, USE_LIGHT_POINT, u);
         struct bsdf wide;
         const struct bsdf *lobes = bsdf;
         if (path->spread && bsdf->alpha < CAUSTIC_ALPHA) {
@@ -315,7 +315,7 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
         }
         if (lights_sample_punctual(snapshot->lights, surface->position, surface->normal,
                                    bsdf->p_transmit > 0.0f, choice, u, &sample))
-            scatter_light(path, surface, lobes, &sample, AIM_LAMP);
+            scatter_light(path, surface, lobes, &sample, AIM_LIGHT);
     }
     if (setup->aims_at_emitters) {
         get_2d(path, USE_EMITTER_POINT, u);
@@ -377,7 +377,7 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
     float lobe = bsdf->p_diffuse < 1.0f ? get_1d(path, USE_LOBE) : 0.0f;
     if (!bsdf_sample(bsdf, lobe, u, &path->direction, &scattering))
         return false;
-    path->throughput *= scattering.share * (1.0f / scattering.density);
+    path->throughput *= scattering.fraction * (1.0f / scattering.density);
     path->density = scattering.density;
     path->from = surface->position;
     path->scattered = true;
@@ -446,7 +446,7 @@ static bool meet(struct path *path, const struct surface *surface)
     struct bsdf bsdf;
     bsdf_init(&bsdf, surface, cross_surface(path, surface, false),
               reflects ? BSDF_ALL : BSDF_TRANSMISSION);
-    if (bsdf.p_diffuse + bsdf.p_gloss + bsdf.p_transmit == 0.0f)
+    if (bsdf.p_diffuse + bsdf.p_specular + bsdf.p_transmit == 0.0f)
         return false;
     aim_at_lights(path, surface, &bsdf);
     bool is_last = path->reflections == setup->max_bounces;

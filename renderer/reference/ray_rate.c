@@ -92,10 +92,10 @@ static void *cast_chunks(void *context)
 {
     struct bare_loop *loop = context;
     for (;;) {
-        uint64_t chunk = __atomic_fetch_add(&loop->next_chunk, 1, __ATOMIC_RELAXED);
-        if (chunk >= CHUNKS)
+        uint64_t batch = __atomic_fetch_add(&loop->next_chunk, 1, __ATOMIC_RELAXED);
+        if (batch >= CHUNKS)
             return NULL;
-        uint64_t from = chunk * loop->count / CHUNKS, to = (chunk + 1) * loop->count / CHUNKS;
+        uint64_t from = batch * loop->count / CHUNKS, to = (batch + 1) * loop->count / CHUNKS;
         uint64_t hits = ray_scene_cast_all(loop->rate->params.scene->rays,
                                            loop->rate->rays.log + from, to - from);
         __atomic_fetch_add(&loop->hits, hits, __ATOMIC_RELAXED);

@@ -295,13 +295,13 @@ void reference_destroy(struct reference **reference_slot)
 }
 
 // Samples that every pixel has; under the mutex.
-static uint32_t least_samples(const struct reference *reference)
+static uint32_t min_samples(const struct reference *reference)
 {
-    uint32_t least = UINT32_MAX;
+    uint32_t minimum = UINT32_MAX;
     for (uint32_t i = 0; i < reference->tile_count; i++)
-        if (reference->tiles[i].samples < least)
-            least = reference->tiles[i].samples;
-    return least;
+        if (reference->tiles[i].samples < minimum)
+            minimum = reference->tiles[i].samples;
+    return minimum;
 }
 
 void reference_start(struct reference *reference, uint32_t samples)
@@ -309,8 +309,8 @@ void reference_start(struct reference *reference, uint32_t samples)
     pthread_mutex_lock(&reference->mutex);
     atomic_store(&reference->cancelled, false);
     reference->target = samples < REFERENCE_MAX_SAMPLES ? samples : REFERENCE_MAX_SAMPLES;
-    uint32_t least = least_samples(reference);
-    reference->level = least < reference->target ? least : reference->target;
+    uint32_t minimum = min_samples(reference);
+    reference->level = minimum < reference->target ? minimum : reference->target;
     advance_level(reference);
     pthread_cond_broadcast(&reference->work);
     pthread_mutex_unlock(&reference->mutex);
@@ -328,9 +328,9 @@ bool reference_wait(struct reference *reference, double seconds)
     pthread_mutex_lock(&reference->mutex);
     int status = 0;
     while (status != ETIMEDOUT && !atomic_load(&reference->cancelled) &&
-           least_samples(reference) < reference->target)
+           min_samples(reference) < reference->target)
         status = pthread_cond_timedwait(&reference->changed, &reference->mutex, &end);
-    bool reached = least_samples(reference) >= reference->target;
+    bool reached = min_samples(reference) >= reference->target;
     pthread_mutex_unlock(&reference->mutex);
     return reached;
 }
@@ -348,7 +348,7 @@ void reference_stop(struct reference *reference)
 bool reference_render(struct reference *reference, uint32_t samples)
 {
     pthread_mutex_lock(&reference->mutex);
-    uint32_t wanted = least_samples(reference) + samples;
+    uint32_t wanted = min_samples(reference) + samples;
     pthread_mutex_unlock(&reference->mutex);
     reference_start(reference, wanted);
     return reference_wait(reference, INFINITY);
@@ -357,7 +357,7 @@ bool reference_render(struct reference *reference, uint32_t samples)
 uint32_t reference_get_samples(struct reference *reference)
 {
     pthread_mutex_lock(&reference->mutex);
-    uint32_t samples = least_samples(reference);
+    uint32_t samples = min_samples(reference);
     pthread_mutex_unlock(&reference->mutex);
     return samples;
 }
@@ -387,7 +387,7 @@ void reference_get_progress(struct reference *reference, struct reference_progre
             sum += luminance / samples;
         }
     double pixels = (double)setup->width * setup->height;
-    *out_progress = (struct reference_progress){.samples = least_samples(reference),
+    *out_progress = (struct reference_progress){.samples = min_samples(reference),
                                                 .nearest_rays = reference->nearest_rays,
                                                 .shadow_rays = reference->shadow_rays,
                                                 .mean_luminance = sum / pixels};

@@ -34,7 +34,7 @@ enum reference_estimator {
 // through a surface is not reflected.
 enum reference_layer {
     REFERENCE_EMISSION,     // never: emission, background
-    REFERENCE_DIRECT,       // once, of lamps and emitters
+    REFERENCE_DIRECT,       // once, of lights and emitters
     REFERENCE_SKY,          // once, of the environment
     REFERENCE_FIRST_BOUNCE, // twice; further layers follow, the last of which holds all the rest
     REFERENCE_MAX_LAYERS = REFERENCE_FIRST_BOUNCE + REFERENCE_MAX_BOUNCE_PICTURES

@@ -58,14 +58,14 @@ static float3 texel_at(const struct texture *texture, uint32_t column, uint32_t 
 }
 
 // Where a look-up falls: its first texel, and how far beyond it.
-struct place {
+struct texel_position {
     float left, top;
     float across, down;
 };
 
 // False for coordinates beyond all reason.
-static inline bool find_place(const struct texture *texture, const float uv[2],
-                              struct place *out_place)
+static inline bool find_texel(const struct texture *texture, const float uv[2],
+                              struct texel_position *out_position)
 {
     float center = texture->nearest ? 0.0f : 0.5f;
     float u = texture->row_u[0] * uv[0] + texture->row_u[1] * uv[1] + texture->row_u[2];
@@ -74,22 +74,22 @@ static inline bool find_place(const struct texture *texture, const float uv[2],
     float y = v * (float)texture->image->height - center;
     if (!(fabsf(x) < 1e15f && fabsf(y) < 1e15f))
         return false;
-    out_place->left = floorf(x);
-    out_place->top = floorf(y);
-    out_place->across = x - out_place->left;
-    out_place->down = y - out_place->top;
+    out_position->left = floorf(x);
+    out_position->top = floorf(y);
+    out_position->across = x - out_position->left;
+    out_position->down = y - out_position->top;
     return true;
 }
 
 void texture_prefetch(const struct texture *texture, const float uv[2])
 {
     const struct image *image = texture->image;
-    struct place place;
-    if (!find_place(texture, uv, &place))
+    struct texel_position texel_position;
+    if (!find_texel(texture, uv, &texel_position))
         return;
-    uint32_t column = wrap_index((int64_t)place.left, image->width, texture->wrap_u);
-    uint32_t row = wrap_index((int64_t)place.top, image->height, texture->wrap_v);
-    uint32_t next_row = wrap_index((int64_t)place.top + 1, image->height, texture->wrap_v);
+    uint32_t column = wrap_index((int64_t)texel_position.left, image->width, texture->wrap_u);
+    uint32_t row = wrap_index((int64_t)texel_position.top, image->height, texture->wrap_v);
+    uint32_t next_row = wrap_index((int64_t)texel_position.top + 1, image->height, texture->wrap_v);
     __builtin_prefetch(image->rgba + ((size_t)row * image->width + column) * 4);
     __builtin_prefetch(image->rgba + ((size_t)next_row * image->width + column) * 4);
 }
@@ -97,20 +97,21 @@ void texture_prefetch(const struct texture *texture, const float uv[2])
 float3 texture_get(const struct texture *texture, const float uv[2])
 {
     const struct image *image = texture->image;
-    struct place place;
-    if (!find_place(texture, uv, &place))
+    struct texel_position texel_position;
+    if (!find_texel(texture, uv, &texel_position))
         return splat3(1.0f);
-    uint32_t column = wrap_index((int64_t)place.left, image->width, texture->wrap_u);
-    uint32_t row = wrap_index((int64_t)place.top, image->height, texture->wrap_v);
+    uint32_t column = wrap_index((int64_t)texel_position.left, image->width, texture->wrap_u);
+    uint32_t row = wrap_index((int64_t)texel_position.top, image->height, texture->wrap_v);
     if (texture->nearest)
         return texel_at(texture, column, row);
-    uint32_t next_column = wrap_index((int64_t)place.left + 1, image->width, texture->wrap_u);
-    uint32_t next_row = wrap_index((int64_t)place.top + 1, image->height, texture->wrap_v);
-    float3 upper = texel_at(texture, column, row) * (1.0f - place.across) +
-                   texel_at(texture, next_column, row) * place.across;
-    float3 lower = texel_at(texture, column, next_row) * (1.0f - place.across) +
-                   texel_at(texture, next_column, next_row) * place.across;
-    return upper * (1.0f - place.down) + lower * place.down;
+    uint32_t next_column =
+        wrap_index((int64_t)texel_position.left + 1, image->width, texture->wrap_u);
+    uint32_t next_row = wrap_index((int64_t)texel_position.top + 1, image->height, texture->wrap_v);
+    float3 upper = texel_at(texture, column, row) * (1.0f - texel_position.across) +
+                   texel_at(texture, next_column, row) * texel_position.across;
+    float3 lower = texel_at(texture, column, next_row) * (1.0f - texel_position.across) +
+                   texel_at(texture, next_column, next_row) * texel_position.across;
+    return upper * (1.0f - texel_position.down) + lower * texel_position.down;
 }
 
 float3 texture_mean(const struct texture *texture)

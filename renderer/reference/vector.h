@@ -109,11 +109,11 @@ static inline float3 clamp013(float3 a)
 
 // Cosine and sine of a share of a full turn, 0 to 1, to 2e-7: Taylor's series within an eighth of a
 // turn of the nearest quarter, and no branches.
-static inline void turn1(float share, float *out_cosine, float *out_sine)
+static inline void turn1(float fraction, float *out_cosine, float *out_sine)
 {
-    float quarter = share * 4.0f + 0.5f;
+    float quarter = fraction * 4.0f + 0.5f;
     int32_t number = (int32_t)quarter;
-    float angle = (share - 0.25f * (float)number) * (2.0f * (float)M_PI), a2 = angle * angle;
+    float angle = (fraction - 0.25f * (float)number) * (2.0f * (float)M_PI), a2 = angle * angle;
     float sine =
         angle *
         (1.0f - a2 * (1.0f / 6.0f) *

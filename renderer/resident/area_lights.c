@@ -5,25 +5,26 @@
 
 #include "renderer/resident/resident.h"
 
-// Emissive primitives of more triangles (lamps with shape) are not split up into planar emitters.
+// Emissive primitives of more triangles (lights with shape) are not split up into planar emitters.
 #define MAX_EMITTER_TRIANGLES 12u
 // Emitters of at least this share of the surface of the scene's bounds are large: with global
 // illumination their light is gathered by cones, which see as much of them as is not hidden, while
 // a shadow map from their centre would not.
-#define LARGE_SHARE 0.03f
+#define LARGE_FRACTION 0.03f
 
-static void emitted_radiance(const struct resident *resident, const struct scene_material *material,
-                             float out_radiance[3])
+static void emitted_radiance(const struct gpu_scene *gpu_scene,
+                             const struct scene_material *material, float out_radiance[3])
 {
     uint32_t image = material->textures[SCENE_TEXTURE_EMISSIVE].image;
     for (int c = 0; c < 3; c++) {
         out_radiance[c] = material->emissive[c] * material->emissive_strength;
-        if (image < resident->scene->image_count)
-            out_radiance[c] *= resident->texture_spaces[TEXTURE_SPACE_COLOR].places[image].mean[c];
+        if (image < gpu_scene->scene->image_count)
+            out_radiance[c] *=
+                gpu_scene->texture_spaces[TEXTURE_SPACE_COLOR].image_slots[image].mean[c];
     }
 }
 
-static void load_corner(const struct scene *scene, const struct resident_instance *instance,
+static void load_corner(const struct scene *scene, const struct gpu_scene_instance *instance,
                         uint32_t corner, float out_world[3])
 {
     uint32_t index = scene->indices[instance->index_first + corner];
@@ -93,14 +94,14 @@ static void write_light(struct area_light_block *light, float corners[4][3],
     light->shadow.first_view = NO_SHADOW;
 }
 
-static uint32_t add_instance(const struct resident *resident,
-                             const struct resident_instance *instance,
+static uint32_t add_instance(const struct gpu_scene *gpu_scene,
+                             const struct gpu_scene_instance *instance,
                              const struct scene_material *material, uint32_t count,
                              struct area_light_block *lights)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     float radiance[3];
-    emitted_radiance(resident, material, radiance);
+    emitted_radiance(gpu_scene, material, radiance);
     mat4 matrix;
     memcpy(matrix, instance->world_from_local, sizeof(matrix));
     bool mirrored = glm_mat4_det(matrix) < 0.0f;
@@ -127,11 +128,11 @@ static uint32_t add_instance(const struct resident *resident,
     return count;
 }
 
-static float bounds_area(const struct resident *resident)
+static float bounds_area(const struct gpu_scene *gpu_scene)
 {
     float size[3];
     for (int axis = 0; axis < 3; axis++)
-        size[axis] = resident->bounds_max[axis] - resident->bounds_min[axis];
+        size[axis] = gpu_scene->bounds_max[axis] - gpu_scene->bounds_min[axis];
     return 2.0f * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
 }
 
@@ -142,15 +143,15 @@ static bool is_emissive(const struct scene_material *material)
             material->emissive[2] > 0.0f);
 }
 
-uint32_t resident_find_area_lights(struct resident *resident,
-                                   struct area_light_block out_lights[MAX_AREA_LIGHTS])
+uint32_t gpu_scene_find_area_lights(struct gpu_scene *gpu_scene,
+                                    struct area_light_block out_lights[MAX_AREA_LIGHTS])
 {
-    const struct scene *scene = resident->scene;
-    float large = LARGE_SHARE * bounds_area(resident);
+    const struct scene *scene = gpu_scene->scene;
+    float large = LARGE_FRACTION * bounds_area(gpu_scene);
     uint32_t count = 0;
-    resident->counts.large_area_lights = 0;
-    for (uint32_t i = 0; i < resident->counts.instances; i++) {
-        struct resident_instance *instance = &resident->instances[i];
+    gpu_scene->counts.large_area_lights = 0;
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
+        struct gpu_scene_instance *instance = &gpu_scene->instances[i];
         const struct scene_material *material =
             &scene->materials[scene->primitives[instance->primitive].material];
         instance->emits_directly = false;
@@ -159,7 +160,7 @@ uint32_t resident_find_area_lights(struct resident *resident,
             instance->index_count / 3 > MAX_EMITTER_TRIANGLES)
             continue;
         uint32_t first = count;
-        count = add_instance(resident, instance, material, count, out_lights);
+        count = add_instance(gpu_scene, instance, material, count, out_lights);
         float area = 0.0f;
         for (uint32_t j = first; j < count; j++)
             area += out_lights[j].area_m2;
@@ -167,7 +168,7 @@ uint32_t resident_find_area_lights(struct resident *resident,
         instance->large_emitter = area >= large;
         for (uint32_t j = first; j < count && instance->large_emitter; j++)
             out_lights[j].in_voxels = 1;
-        resident->counts.large_area_lights += instance->large_emitter ? count - first : 0;
+        gpu_scene->counts.large_area_lights += instance->large_emitter ? count - first : 0;
     }
     return count;
 }

@@ -10,7 +10,7 @@
 #define NO_CONE         2.0f
 
 static void bound_triangles(const struct scene *scene, const uint32_t *indices, uint32_t count,
-                            struct resident_cluster *cluster)
+                            struct gpu_scene_cluster *cluster)
 {
     vec3 low, high;
     glm_vec3_fill(low, INFINITY);
@@ -45,7 +45,7 @@ static bool triangle_normal(const struct scene *scene, const uint32_t indices[3]
 // within 90 degrees of its normal; for all of a cone of half-angle t, within 90 degrees - t of the
 // axis: cutoff = cos(90 degrees - t) = sin t.
 static void bound_normals(const struct scene *scene, const uint32_t *indices, uint32_t count,
-                          struct resident_cluster *cluster)
+                          struct gpu_scene_cluster *cluster)
 {
     vec3 normal, sum = {0.0f, 0.0f, 0.0f};
     for (uint32_t i = 0; i + 2 < count; i += 3)
@@ -60,9 +60,9 @@ static void bound_normals(const struct scene *scene, const uint32_t *indices, ui
         narrowest > MIN_CONE_COSINE ? sqrtf(1.0f - narrowest * narrowest) + 1e-3f : NO_CONE;
 }
 
-bool resident_build_clusters(struct resident *resident)
+bool gpu_scene_build_clusters(struct gpu_scene *gpu_scene)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     const uint32_t cluster_indices = 3u << ID_BLOCK_BITS;
     uint32_t total = 0;
     uint32_t *firsts = calloc(scene->primitive_count ? scene->primitive_count : 1, sizeof(*firsts));
@@ -72,22 +72,22 @@ bool resident_build_clusters(struct resident *resident)
         firsts[i] = total;
         total += (scene->primitives[i].index_count + cluster_indices - 1) / cluster_indices;
     }
-    free(resident->clusters);
-    resident->clusters = malloc((total ? total : 1) * sizeof(*resident->clusters));
-    for (uint32_t i = 0; i < scene->primitive_count && resident->clusters; i++) {
+    free(gpu_scene->clusters);
+    gpu_scene->clusters = malloc((total ? total : 1) * sizeof(*gpu_scene->clusters));
+    for (uint32_t i = 0; i < scene->primitive_count && gpu_scene->clusters; i++) {
         const struct scene_primitive *primitive = &scene->primitives[i];
         for (uint32_t at = 0; at < primitive->index_count; at += cluster_indices) {
             uint32_t left = primitive->index_count - at;
             uint32_t count = left < cluster_indices ? left : cluster_indices;
             const uint32_t *indices = scene->indices + primitive->index_first + at;
-            struct resident_cluster *cluster =
-                &resident->clusters[firsts[i] + at / cluster_indices];
+            struct gpu_scene_cluster *cluster =
+                &gpu_scene->clusters[firsts[i] + at / cluster_indices];
             bound_triangles(scene, indices, count, cluster);
             bound_normals(scene, indices, count, cluster);
         }
     }
-    for (uint32_t i = 0; i < resident->counts.instances; i++)
-        resident->instances[i].cluster_first = firsts[resident->instances[i].primitive];
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
+        gpu_scene->instances[i].cluster_first = firsts[gpu_scene->instances[i].primitive];
     free(firsts);
-    return resident->clusters != NULL;
+    return gpu_scene->clusters != NULL;
 }

@@ -154,10 +154,10 @@ static void integrate_brdf(float roughness, float n_v, float out_scale_bias[2])
             continue;
         float l = n_v * sqrtf(n_l * n_l * (1.0f - a2) + a2);
         float v = n_l * sqrtf(n_v * n_v * (1.0f - a2) + a2);
-        float share = 0.5f / (l + v) * 4.0f * n_l * v_h / n_h;
+        float fraction = 0.5f / (l + v) * 4.0f * n_l * v_h / n_h;
         float fresnel = powf(1.0f - fminf(v_h, 1.0f), 5.0f);
-        scale += share * (1.0f - fresnel);
-        bias += share * fresnel;
+        scale += fraction * (1.0f - fresnel);
+        bias += fraction * fresnel;
     }
     out_scale_bias[0] = (float)(scale / BRDF_SAMPLES);
     out_scale_bias[1] = (float)(bias / BRDF_SAMPLES);
@@ -176,24 +176,24 @@ static void tabulate_brdf(vec4 *nodes)
     }
 }
 
-static bool upload_levels(struct resident *resident, const struct scene_environment *environment)
+static bool upload_levels(struct gpu_scene *gpu_scene, const struct scene_environment *environment)
 {
     // A constant or smooth sky needs no more than a few texels.
     bool pictured = environment->type == SCENE_ENVIRONMENT_EQUIRECT;
     bool any = environment->type != SCENE_ENVIRONMENT_NONE;
     uint32_t edge = pictured ? LEVEL_EDGE : any ? 16 : 1;
-    gpu_texture_destroy(&resident->environment_levels);
-    resident->environment_levels =
-        gpu_texture_create(resident->gpu, &(struct gpu_texture_params){
-                                              .label = "environment",
-                                              .format = GPU_FORMAT_RGBA16F,
-                                              .width = edge,
-                                              .height = edge,
-                                              .layers = LEVEL_COUNT,
-                                              .filter = GPU_FILTER_LINEAR,
-                                          });
+    gpu_texture_destroy(&gpu_scene->environment_levels);
+    gpu_scene->environment_levels =
+        gpu_texture_create(gpu_scene->gpu, &(struct gpu_texture_params){
+                                               .label = "environment",
+                                               .format = GPU_FORMAT_RGBA16F,
+                                               .width = edge,
+                                               .height = edge,
+                                               .layers = LEVEL_COUNT,
+                                               .filter = GPU_FILTER_LINEAR,
+                                           });
     float *texels = calloc((size_t)edge * edge, 4 * sizeof(float));
-    bool done = resident->environment_levels && texels;
+    bool done = gpu_scene->environment_levels && texels;
     for (uint32_t level = 0; done && level < LEVEL_COUNT; level++) {
         for (uint32_t i = 0; any && i < edge * edge; i++) {
             float n[3];
@@ -202,35 +202,35 @@ static bool upload_levels(struct resident *resident, const struct scene_environm
                                  ((float)row + 0.5f) / (float)edge, n);
             blur_direction(environment, n, (float)level / (LEVEL_COUNT - 1), texels + 4 * i);
         }
-        gpu_texture_write(resident->environment_levels, 0, level, texels);
+        gpu_texture_write(gpu_scene->environment_levels, 0, level, texels);
     }
     free(texels);
     return done;
 }
 
-static bool upload_background(struct resident *resident,
+static bool upload_background(struct gpu_scene *gpu_scene,
                               const struct scene_environment *environment)
 {
     bool pictured = environment->type == SCENE_ENVIRONMENT_EQUIRECT;
     uint32_t width = pictured ? environment->width : 1;
     uint32_t height = pictured ? environment->height : 1;
-    gpu_texture_destroy(&resident->environment_background);
-    resident->environment_background =
-        gpu_texture_create(resident->gpu, &(struct gpu_texture_params){
-                                              .label = "environment",
-                                              .format = GPU_FORMAT_RGBA16F,
-                                              .width = width,
-                                              .height = height,
-                                              .filter = GPU_FILTER_LINEAR,
-                                              .repeat_u = true,
-                                          });
+    gpu_texture_destroy(&gpu_scene->environment_background);
+    gpu_scene->environment_background =
+        gpu_texture_create(gpu_scene->gpu, &(struct gpu_texture_params){
+                                               .label = "environment",
+                                               .format = GPU_FORMAT_RGBA16F,
+                                               .width = width,
+                                               .height = height,
+                                               .filter = GPU_FILTER_LINEAR,
+                                               .repeat_u = true,
+                                           });
     float *texels = calloc((size_t)width * height, 4 * sizeof(float));
-    bool done = resident->environment_background && texels;
+    bool done = gpu_scene->environment_background && texels;
     for (size_t i = 0; done && pictured && i < (size_t)width * height; i++)
         for (int c = 0; c < 3; c++)
             texels[4 * i + (size_t)c] = fminf(environment->pixels[3 * i + (size_t)c], MAX_RADIANCE);
     if (done)
-        gpu_texture_write(resident->environment_background, 0, 0, texels);
+        gpu_texture_write(gpu_scene->environment_background, 0, 0, texels);
     free(texels);
     return done;
 }
@@ -243,9 +243,9 @@ static bool same_pictures(const struct scene_environment *a, const struct scene_
            memcmp(a->ground_color, b->ground_color, sizeof(a->ground_color)) == 0;
 }
 
-bool resident_upload_environment(struct resident *resident)
+bool gpu_scene_upload_environment(struct gpu_scene *gpu_scene)
 {
-    const struct scene_environment *environment = &resident->scene->environment;
+    const struct scene_environment *environment = &gpu_scene->scene->environment;
     struct environment_block block = {0};
     if (environment->type != SCENE_ENVIRONMENT_NONE)
         project_harmonics(environment, block.irradiance_sh);
@@ -258,16 +258,16 @@ bool resident_upload_environment(struct resident *resident)
         block.horizon[c] = gradient ? environment->horizon_color[c] : environment->color[c];
         block.ground[c] = gradient ? environment->ground_color[c] : environment->color[c];
     }
-    if (!gpu_buffer_ensure(resident->gpu, &resident->environment, "environment", GPU_BUFFER_STATIC,
-                           sizeof(block)))
+    if (!gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->environment, "environment",
+                           GPU_BUFFER_STATIC, sizeof(block)))
         return false;
-    gpu_buffer_write(resident->environment, 0, sizeof(block), &block);
+    gpu_buffer_write(gpu_scene->environment, 0, sizeof(block), &block);
     // Intensity and rotation are uniforms: the pictures need not be made again for them.
-    const struct scene_environment *seen = &resident->environment_seen;
-    if (resident->environment_levels && same_pictures(seen, environment))
+    const struct scene_environment *seen = &gpu_scene->environment_seen;
+    if (gpu_scene->environment_levels && same_pictures(seen, environment))
         return true;
-    if (!upload_levels(resident, environment) || !upload_background(resident, environment))
+    if (!upload_levels(gpu_scene, environment) || !upload_background(gpu_scene, environment))
         return false;
-    resident->environment_seen = *environment;
+    gpu_scene->environment_seen = *environment;
     return true;
 }

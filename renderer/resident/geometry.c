@@ -45,11 +45,11 @@ static uint32_t *pack_vertices(const struct scene *scene)
     return words;
 }
 
-static bool upload(struct resident *resident, struct gpu_buffer **buffer, const char *label,
+static bool upload(struct gpu_scene *gpu_scene, struct gpu_buffer **buffer, const char *label,
                    size_t size_bytes, const void *data)
 {
     gpu_buffer_destroy(buffer);
-    *buffer = gpu_buffer_create(resident->gpu, label, GPU_BUFFER_STATIC, size_bytes, data);
+    *buffer = gpu_buffer_create(gpu_scene->gpu, label, GPU_BUFFER_STATIC, size_bytes, data);
     return *buffer != NULL;
 }
 
@@ -64,26 +64,26 @@ static uint32_t count_instances(const struct scene *scene)
 
 // Gives each instance a run of visibility ids that starts at a block boundary, and tells for each
 // block whose it is.
-static bool upload_id_blocks(struct resident *resident)
+static bool upload_id_blocks(struct gpu_scene *gpu_scene)
 {
     const uint32_t block_size = 1u << ID_BLOCK_BITS;
     uint64_t block_count = 0;
-    for (uint32_t i = 0; i < resident->counts.instances; i++)
-        block_count += (resident->instances[i].index_count / 3 + block_size - 1) / block_size;
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
+        block_count += (gpu_scene->instances[i].index_count / 3 + block_size - 1) / block_size;
     if (block_count >= UINT32_MAX / block_size)
         return false;
     uint32_t *owners = malloc((block_count ? block_count : 1) * sizeof(*owners));
     if (!owners)
         return false;
     uint32_t at = 0;
-    for (uint32_t i = 0; i < resident->counts.instances; i++) {
-        uint32_t triangles = resident->instances[i].index_count / 3;
-        resident->instances[i].first_id = at << ID_BLOCK_BITS;
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
+        uint32_t triangles = gpu_scene->instances[i].index_count / 3;
+        gpu_scene->instances[i].first_id = at << ID_BLOCK_BITS;
         for (uint32_t j = 0; j < (triangles + block_size - 1) / block_size; j++)
             owners[at++] = i;
     }
-    resident->cluster_count = at;
-    bool done = upload(resident, &resident->id_blocks, "geometry.id_blocks",
+    gpu_scene->cluster_count = at;
+    bool done = upload(gpu_scene, &gpu_scene->id_blocks, "geometry.id_blocks",
                        block_count * sizeof(*owners), owners);
     free(owners);
     return done;
@@ -99,15 +99,15 @@ static bool has_colors(const struct scene *scene, const struct scene_primitive *
     return false;
 }
 
-bool resident_upload_geometry(struct resident *resident)
+bool gpu_scene_upload_geometry(struct gpu_scene *gpu_scene)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     uint32_t count = count_instances(scene);
-    free(resident->instances);
-    resident->instances = calloc(count ? count : 1, sizeof(*resident->instances));
-    if (!resident->instances)
+    free(gpu_scene->instances);
+    gpu_scene->instances = calloc(count ? count : 1, sizeof(*gpu_scene->instances));
+    if (!gpu_scene->instances)
         return false;
-    resident->counts.instances = 0;
+    gpu_scene->counts.instances = 0;
     for (uint32_t i = 0; i < scene->node_count; i++) {
         const struct scene_node *node = &scene->nodes[i];
         if (node->mesh == SCENE_NONE || node->removed)
@@ -115,7 +115,7 @@ bool resident_upload_geometry(struct resident *resident)
         const struct scene_mesh *mesh = &scene->meshes[node->mesh];
         for (uint32_t j = 0; j < mesh->primitive_count; j++) {
             const struct scene_primitive *primitive = &scene->primitives[mesh->primitive_first + j];
-            resident->instances[resident->counts.instances++] = (struct resident_instance){
+            gpu_scene->instances[gpu_scene->counts.instances++] = (struct gpu_scene_instance){
                 .node = i,
                 .primitive = mesh->primitive_first + j,
                 .index_first = primitive->index_first,
@@ -123,19 +123,19 @@ bool resident_upload_geometry(struct resident *resident)
             };
         }
     }
-    resident->counts.colored_primitives = 0;
+    gpu_scene->counts.colored_primitives = 0;
     for (uint32_t i = 0; i < scene->primitive_count; i++)
-        resident->counts.colored_primitives += has_colors(scene, &scene->primitives[i]);
-    resident->drawable = scene->index_count > 0 && count > 0;
+        gpu_scene->counts.colored_primitives += has_colors(scene, &scene->primitives[i]);
+    gpu_scene->drawable = scene->index_count > 0 && count > 0;
     uint32_t *words = pack_vertices(scene);
     bool done = words &&
-                upload(resident, &resident->vertices, "geometry.vertices",
+                upload(gpu_scene, &gpu_scene->vertices, "geometry.vertices",
                        (size_t)scene->vertex_count * VERTEX_WORDS * sizeof(*words), words) &&
-                upload(resident, &resident->indices, "geometry.indices",
+                upload(gpu_scene, &gpu_scene->indices, "geometry.indices",
                        scene->index_count * sizeof(uint32_t), scene->indices) &&
-                upload_id_blocks(resident);
+                upload_id_blocks(gpu_scene);
     free(words);
-    return done && resident_build_clusters(resident) && resident_upload_raster_mesh(resident);
+    return done && gpu_scene_build_clusters(gpu_scene) && gpu_scene_upload_raster_mesh(gpu_scene);
 }
 
 static void fill_instance_block(struct instance_block *block, const float matrix[16])
@@ -159,14 +159,14 @@ static uint8_t group_of(const struct scene_material *material, bool mirrored)
     return (uint8_t)((int)kind * DRAW_CULL_COUNT + (int)cull);
 }
 
-static void place_instance(struct resident *resident, struct resident_instance *instance,
-                           struct instance_block *block)
+static void transform_instance(struct gpu_scene *gpu_scene, struct gpu_scene_instance *instance,
+                               struct instance_block *block)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     const struct scene_node *node = &scene->nodes[instance->node];
     const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
     memcpy(instance->world_from_local, node->world_from_local, sizeof(node->world_from_local));
-    resident_place(resident, node->world_from_local + 12, instance->world_from_local + 12);
+    gpu_scene_from_world(gpu_scene, node->world_from_local + 12, instance->world_from_local + 12);
     fill_instance_block(block, instance->world_from_local);
     block->first_index = instance->index_first;
     block->material = primitive->material;
@@ -187,21 +187,21 @@ static void place_instance(struct resident *resident, struct resident_instance *
         instance->bounds_min[axis] = (float)low[axis];
         instance->bounds_max[axis] = (float)high[axis];
         if (instance->visible) {
-            resident->bounds_min[axis] =
-                fminf(resident->bounds_min[axis], instance->bounds_min[axis]);
-            resident->bounds_max[axis] =
-                fmaxf(resident->bounds_max[axis], instance->bounds_max[axis]);
+            gpu_scene->bounds_min[axis] =
+                fminf(gpu_scene->bounds_min[axis], instance->bounds_min[axis]);
+            gpu_scene->bounds_max[axis] =
+                fmaxf(gpu_scene->bounds_max[axis], instance->bounds_max[axis]);
         }
     }
 }
 
 // FNV-1a over what decides whether and how an instance casts a shadow, beside its placement.
-static uint64_t hash_casters(const struct resident *resident)
+static uint64_t hash_casters(const struct gpu_scene *gpu_scene)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     uint64_t hash = 1469598103934665603ull;
-    for (uint32_t i = 0; i < resident->counts.instances; i++) {
-        const struct resident_instance *instance = &resident->instances[i];
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
+        const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
         const struct scene_material *material =
             &scene->materials[scene->primitives[instance->primitive].material];
         bool masked = material->alpha_mode == SCENE_ALPHA_MASK;
@@ -216,30 +216,30 @@ static uint64_t hash_casters(const struct resident *resident)
     return hash;
 }
 
-bool resident_upload_instances(struct resident *resident)
+bool gpu_scene_upload_instances(struct gpu_scene *gpu_scene)
 {
-    uint32_t count = resident->counts.instances;
+    uint32_t count = gpu_scene->counts.instances;
     struct instance_block *blocks = calloc(count ? count : 1, sizeof(*blocks));
     if (!blocks)
         return false;
     for (int axis = 0; axis < 3; axis++) {
-        resident->bounds_min[axis] = INFINITY;
-        resident->bounds_max[axis] = -INFINITY;
+        gpu_scene->bounds_min[axis] = INFINITY;
+        gpu_scene->bounds_max[axis] = -INFINITY;
     }
     for (uint32_t i = 0; i < count; i++)
-        place_instance(resident, &resident->instances[i], &blocks[i]);
-    uint64_t caster_hash = hash_casters(resident);
-    const struct scene_revisions *now = &resident->scene->revisions;
-    if (caster_hash != resident->caster_hash || now->geometry != resident->seen.geometry ||
-        now->transforms != resident->seen.transforms)
-        resident->casters_changed = true;
-    resident->caster_hash = caster_hash;
-    float diagonal = glm_vec3_distance(resident->bounds_min, resident->bounds_max);
-    resident->diagonal_m = isfinite(diagonal) && diagonal > 0.0f ? diagonal : 1.0f;
-    bool done = gpu_buffer_ensure(resident->gpu, &resident->instance_blocks, "geometry.instances",
+        transform_instance(gpu_scene, &gpu_scene->instances[i], &blocks[i]);
+    uint64_t caster_hash = hash_casters(gpu_scene);
+    const struct scene_revisions *now = &gpu_scene->scene->revisions;
+    if (caster_hash != gpu_scene->caster_hash || now->geometry != gpu_scene->seen.geometry ||
+        now->transforms != gpu_scene->seen.transforms)
+        gpu_scene->casters_changed = true;
+    gpu_scene->caster_hash = caster_hash;
+    float diagonal = glm_vec3_distance(gpu_scene->bounds_min, gpu_scene->bounds_max);
+    gpu_scene->diagonal_m = isfinite(diagonal) && diagonal > 0.0f ? diagonal : 1.0f;
+    bool done = gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->instance_blocks, "geometry.instances",
                                   GPU_BUFFER_STATIC, count * sizeof(*blocks));
     if (done)
-        gpu_buffer_write(resident->instance_blocks, 0, count * sizeof(*blocks), blocks);
+        gpu_buffer_write(gpu_scene->instance_blocks, 0, count * sizeof(*blocks), blocks);
     free(blocks);
     return done;
 }

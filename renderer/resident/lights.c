@@ -9,11 +9,11 @@
 #define MAX_SPOT_SHADOW_FOV 2.9f // radians; a wider cone gets a cube
 
 struct light_builder {
-    struct resident *resident;
+    struct gpu_scene *gpu_scene;
     struct shadow_view_block views[MAX_SHADOW_LAYERS];
     uint32_t layers;
     const struct light_block
-        *owners[MAX_SHADOW_LAYERS]; // of the lamp whose layers begin here; or NULL
+        *owners[MAX_SHADOW_LAYERS]; // of the light whose layers begin here; or NULL
 };
 
 // Reversed, infinite Z: depth = near / distance.
@@ -33,9 +33,9 @@ static void perspective_from(const float origin[3], const float forward[3], cons
     glm_mat4_mul(clip_from_view, view_from_world, out_clip_from_world);
 }
 
-float resident_shadow_near_m(const struct resident *resident)
+float gpu_scene_shadow_near_m(const struct gpu_scene *gpu_scene)
 {
-    return fminf(resident->diagonal_m * SHADOW_NEAR_FRACTION, SHADOW_NEAR_MOST_M);
+    return fminf(gpu_scene->diagonal_m * SHADOW_NEAR_FRACTION, SHADOW_NEAR_MAX_M);
 }
 
 static void add_perspective_view(struct light_builder *builder, const float origin[3],
@@ -43,7 +43,7 @@ static void add_perspective_view(struct light_builder *builder, const float orig
 {
     struct shadow_view_block *view = &builder->views[builder->layers++];
     *view = (struct shadow_view_block){0};
-    float near_m = resident_shadow_near_m(builder->resident);
+    float near_m = gpu_scene_shadow_near_m(builder->gpu_scene);
     perspective_from(origin, forward, up, fov_rad, near_m, view->clip_from_world);
     view->texel_m = 2.0f * tanf(0.5f * fov_rad) / (float)SHADOW_MAP_EDGE;
     view->perspective = 1;
@@ -62,9 +62,9 @@ static void add_cube_views(struct light_builder *builder, const float origin[3])
         add_perspective_view(builder, origin, axes[face][0], axes[face][1], fov);
 }
 
-void resident_directional_view(const struct resident *resident, const float axis[3],
-                               const float box_min[3], const float box_max[3],
-                               struct shadow_view_block *out_view)
+void gpu_scene_directional_view(const struct gpu_scene *gpu_scene, const float axis[3],
+                                const float box_min[3], const float box_max[3],
+                                struct shadow_view_block *out_view)
 {
     vec3 up = {0.0f, 1.0f, 0.0f};
     if (fabsf(axis[1]) > 0.9f)
@@ -73,10 +73,10 @@ void resident_directional_view(const struct resident *resident, const float axis
     glm_lookat_rh((vec3){0, 0, 0}, (float *)axis, up, view_from_world);
     double low[3], high[3], scene_low[3], scene_high[3];
     placement_transform_box((const float *)view_from_world, box_min, box_max, low, high);
-    placement_transform_box((const float *)view_from_world, resident->bounds_min,
-                            resident->bounds_max, scene_low, scene_high);
+    placement_transform_box((const float *)view_from_world, gpu_scene->bounds_min,
+                            gpu_scene->bounds_max, scene_low, scene_high);
     // A flat scene still needs some depth, or the smallest bias would leave it.
-    double pad = 0.01 * resident->diagonal_m;
+    double pad = 0.01 * gpu_scene->diagonal_m;
     low[2] = scene_low[2] - pad;
     high[2] = scene_high[2] + pad;
     *out_view = (struct shadow_view_block){0};
@@ -106,14 +106,14 @@ static bool light_is_lit(const struct scene *scene, const struct scene_light *li
            scene->nodes[light->node].world_visible;
 }
 
-static void fill_light_block(struct light_block *block, const struct resident *resident,
+static void fill_light_block(struct light_block *block, const struct gpu_scene *gpu_scene,
                              uint32_t id)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     const struct scene_light *light = &scene->lights[id];
     *block = (struct light_block){0};
     scene_get_light_placement(scene, id, block->position, block->direction);
-    resident_place(resident, block->position, block->position);
+    gpu_scene_from_world(gpu_scene, block->position, block->position);
     static const uint32_t types[] = {
         [SCENE_LIGHT_DIRECTIONAL] = LIGHT_DIRECTIONAL,
         [SCENE_LIGHT_POINT] = LIGHT_POINT,
@@ -132,9 +132,9 @@ static void fill_light_block(struct light_block *block, const struct resident *r
     block->shadow.light_id = id;
 }
 
-// Whether one shadow map does for both: the same kind of lamp in the same place, which shines the
+// Whether one shadow map does for both: the same kind of light in the same place, which shines the
 // same way.
-static bool shares_shadow(const struct light_block *a, const struct light_block *b)
+static bool has_same_shadow(const struct light_block *a, const struct light_block *b)
 {
     bool turned = memcmp(a->direction, b->direction, sizeof(vec3)) != 0 ||
                   a->cos_outer_cone != b->cos_outer_cone;
@@ -143,11 +143,11 @@ static bool shares_shadow(const struct light_block *a, const struct light_block 
            (!turned || a->type == LIGHT_POINT);
 }
 
-static bool share_shadow(const struct light_builder *builder, struct light_block *block)
+static bool reuse_shadow(const struct light_builder *builder, struct light_block *block)
 {
     for (uint32_t i = 0; i < builder->layers; i++) {
         const struct light_block *owner = builder->owners[i];
-        if (!owner || !shares_shadow(owner, block))
+        if (!owner || !has_same_shadow(owner, block))
             continue;
         uint32_t id = block->shadow.light_id;
         block->shadow = owner->shadow;
@@ -160,31 +160,31 @@ static bool share_shadow(const struct light_builder *builder, struct light_block
 static void add_light_shadow(struct light_builder *builder, struct light_block *block,
                              const struct scene_light *light)
 {
-    struct resident *resident = builder->resident;
-    if (!light->casts_shadow || !resident->drawable || !isfinite(resident->bounds_min[0]))
+    struct gpu_scene *gpu_scene = builder->gpu_scene;
+    if (!light->casts_shadow || !gpu_scene->drawable || !isfinite(gpu_scene->bounds_min[0]))
         return;
     float fov = 2.0f * light->outer_cone_rad * SHADOW_FACE_MARGIN + 0.02f;
     bool spot = light->type == SCENE_LIGHT_SPOT && fov < MAX_SPOT_SHADOW_FOV;
     bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
     uint32_t needed = directional || spot ? 1 : 6;
-    if (share_shadow(builder, block))
+    if (reuse_shadow(builder, block))
         return;
     if (builder->layers + needed > MAX_SHADOW_LAYERS) {
-        resident->counts.unshadowed++;
+        gpu_scene->counts.unshadowed++;
         return;
     }
     builder->owners[builder->layers] = block;
     block->shadow.first_view = builder->layers;
     block->shadow.view_count = needed;
-    resident->counts.flat_shadows += needed == 1;
-    resident->counts.cube_shadows += needed == 6;
+    gpu_scene->counts.single_view_shadows += needed == 1;
+    gpu_scene->counts.point_shadows += needed == 6;
     if (directional) {
-        resident_directional_view(resident, block->direction, resident->bounds_min,
-                                  resident->bounds_max, &builder->views[builder->layers++]);
-        if (resident->directional_light == NO_SHADOW) {
-            resident->directional_light = block->shadow.light_id;
-            resident->sun_shadow_view = block->shadow.first_view;
-            memcpy(resident->directional_axis, block->direction, sizeof(vec3));
+        gpu_scene_directional_view(gpu_scene, block->direction, gpu_scene->bounds_min,
+                                   gpu_scene->bounds_max, &builder->views[builder->layers++]);
+        if (gpu_scene->directional_light == NO_SHADOW) {
+            gpu_scene->directional_light = block->shadow.light_id;
+            gpu_scene->sun_shadow_view = block->shadow.first_view;
+            memcpy(gpu_scene->directional_axis, block->direction, sizeof(vec3));
             block->shadow.has_cascades = 1;
         }
     } else if (spot) {
@@ -201,12 +201,12 @@ static void add_area_light_shadow(struct light_builder *builder, struct area_lig
 {
     light->shadow.first_view = NO_SHADOW;
     if (builder->layers + 6 > MAX_SHADOW_LAYERS) {
-        builder->resident->counts.unshadowed++;
+        builder->gpu_scene->counts.unshadowed++;
         return;
     }
     light->shadow.first_view = builder->layers;
     light->shadow.view_count = 6;
-    builder->resident->counts.cube_shadows++;
+    builder->gpu_scene->counts.point_shadows++;
     // A little before the emitter, so that it does not shade itself.
     vec3 origin;
     float lift = 1e-3f * sqrtf(light->area_m2);
@@ -216,48 +216,48 @@ static void add_area_light_shadow(struct light_builder *builder, struct area_lig
 }
 
 // Keeps rendered layers whose view is as it was; when any caster changed, all are stale.
-static bool keep_shadow_map(struct resident *resident, const struct light_builder *builder)
+static bool keep_shadow_map(struct gpu_scene *gpu_scene, const struct light_builder *builder)
 {
     uint32_t layers = builder->layers;
-    if (!resident->shadow_map)
-        resident->shadow_map = shadow_map_create(resident->gpu, SHADOW_MAP_EDGE);
-    if (!resident->shadow_map || !shadow_map_reserve_lamps(resident->shadow_map, layers))
+    if (!gpu_scene->shadow_map)
+        gpu_scene->shadow_map = shadow_map_create(gpu_scene->gpu, SHADOW_MAP_EDGE);
+    if (!gpu_scene->shadow_map || !shadow_map_reserve_lights(gpu_scene->shadow_map, layers))
         return false;
     for (uint32_t i = 0; i < layers; i++)
-        if (memcmp(&resident->shadow_views[i], &builder->views[i], sizeof(builder->views[i])) != 0)
-            resident->shadow_stale[i] = true;
-    memcpy(resident->shadow_views, builder->views, layers * sizeof(builder->views[0]));
-    resident->counts.shadow_layers = layers;
-    if (resident->casters_changed)
-        memset(resident->shadow_stale, true, sizeof(resident->shadow_stale));
-    bool changed = resident->casters_changed;
+        if (memcmp(&gpu_scene->shadow_views[i], &builder->views[i], sizeof(builder->views[i])) != 0)
+            gpu_scene->shadow_stale[i] = true;
+    memcpy(gpu_scene->shadow_views, builder->views, layers * sizeof(builder->views[0]));
+    gpu_scene->counts.shadow_layers = layers;
+    if (gpu_scene->casters_changed)
+        memset(gpu_scene->shadow_stale, true, sizeof(gpu_scene->shadow_stale));
+    bool changed = gpu_scene->casters_changed;
     for (uint32_t i = 0; i < layers; i++)
-        changed = changed || resident->shadow_stale[i];
-    resident->casters_changed = false;
+        changed = changed || gpu_scene->shadow_stale[i];
+    gpu_scene->casters_changed = false;
     if (changed)
-        resident->shadow_revision++;
+        gpu_scene->shadow_revision++;
     return true;
 }
 
-bool resident_upload_lights(struct resident *resident)
+bool gpu_scene_upload_lights(struct gpu_scene *gpu_scene)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     struct light_builder *builder = calloc(1, sizeof(*builder));
     size_t count = scene->light_count ? scene->light_count : 1;
     struct light_block *lights = calloc(count, sizeof(*lights));
     struct area_light_block area_lights[MAX_AREA_LIGHTS];
     bool done = builder && lights;
     if (done) {
-        builder->resident = resident;
-        struct resident_counts *counts = &resident->counts;
+        builder->gpu_scene = gpu_scene;
+        struct gpu_scene_counts *counts = &gpu_scene->counts;
         counts->lights = 0;
         counts->ranged_lights = 0;
         counts->unshadowed = 0;
-        counts->flat_shadows = 0;
-        counts->cube_shadows = 0;
-        resident->directional_light = NO_SHADOW;
-        counts->area_lights = resident_find_area_lights(resident, area_lights);
-        // Shadow maps go to suns first, then to planar emitters, then to lamps as listed.
+        counts->single_view_shadows = 0;
+        counts->point_shadows = 0;
+        gpu_scene->directional_light = NO_SHADOW;
+        counts->area_lights = gpu_scene_find_area_lights(gpu_scene, area_lights);
+        // Shadow maps go to suns first, then to planar emitters, then to lights as listed.
         for (int round = 0; round < 2; round++) {
             for (uint32_t i = 0; i < scene->light_count; i++) {
                 const struct scene_light *light = &scene->lights[i];
@@ -265,23 +265,23 @@ bool resident_upload_lights(struct resident *resident)
                 if (!light_is_lit(scene, light) || directional != (round == 0))
                     continue;
                 struct light_block *block = &lights[counts->lights++];
-                fill_light_block(block, resident, i);
+                fill_light_block(block, gpu_scene, i);
                 add_light_shadow(builder, block, light);
                 counts->ranged_lights += block->range_m > 0.0f;
             }
             for (uint32_t i = 0; round == 0 && i < counts->area_lights; i++)
                 add_area_light_shadow(builder, &area_lights[i]);
         }
-        done = gpu_buffer_ensure(resident->gpu, &resident->lights, "lights", GPU_BUFFER_STATIC,
+        done = gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->lights, "lights", GPU_BUFFER_STATIC,
                                  count * sizeof(*lights)) &&
-               gpu_buffer_ensure(resident->gpu, &resident->area_lights, "lights.area",
+               gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->area_lights, "lights.area",
                                  GPU_BUFFER_STATIC, sizeof(area_lights)) &&
-               keep_shadow_map(resident, builder);
+               keep_shadow_map(gpu_scene, builder);
     }
     if (done) {
-        gpu_buffer_write(resident->lights, 0, count * sizeof(*lights), lights);
-        gpu_buffer_write(resident->area_lights, 0,
-                         resident->counts.area_lights * sizeof(*area_lights), area_lights);
+        gpu_buffer_write(gpu_scene->lights, 0, count * sizeof(*lights), lights);
+        gpu_buffer_write(gpu_scene->area_lights, 0,
+                         gpu_scene->counts.area_lights * sizeof(*area_lights), area_lights);
     }
     free(builder);
     free(lights);

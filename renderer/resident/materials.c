@@ -33,7 +33,7 @@ static bool has_transform(const struct scene_texture *texture)
 static void fill_texture_block(const struct texture_space *space, struct texture_block *block,
                                const struct scene_texture *texture)
 {
-    const struct image_place *place = &space->places[texture->image];
+    const struct image_slot *image_entry = &space->image_slots[texture->image];
     float c = cosf(texture->rotation_rad), s = sinf(texture->rotation_rad);
     // KHR_texture_transform: translation * rotation * scale, rotation counter-clockwise in a frame
     // whose v points down.
@@ -41,16 +41,17 @@ static void fill_texture_block(const struct texture_space *space, struct texture
         .uv_row_u = {c * texture->scale[0], s * texture->scale[1], texture->offset[0]},
         .uv_row_v = {-s * texture->scale[0], c * texture->scale[1], texture->offset[1]},
     };
-    uint32_t edge_log2 = log2_of(gpu_texture_edge(space->classes[place->class_number]));
+    uint32_t edge_log2 = log2_of(gpu_texture_edge(space->classes[image_entry->class_number]));
     block->sampling =
         (texture->uv_set == 1 ? TEXTURE_UV_SET_1 : 0) | (texture->nearest ? TEXTURE_NEAREST : 0) |
         ((uint32_t)texture->wrap_u << TEXTURE_WRAP_U_BIT) |
         ((uint32_t)texture->wrap_v << TEXTURE_WRAP_V_BIT) | (edge_log2 << TEXTURE_EDGE_BIT) |
-        (place->class_number << TEXTURE_CLASS_BIT) | (place->layer << TEXTURE_LAYER_BIT);
+        (image_entry->class_number << TEXTURE_CLASS_BIT) |
+        (image_entry->layer << TEXTURE_LAYER_BIT);
 }
 
 // glTF 2.0: green is roughness, blue metallic.
-static void scale_means(struct material_block *block, const struct image_place *map)
+static void scale_means(struct material_block *block, const struct image_slot *map)
 {
     block->mean_metallic *= map->mean[2];
     block->mean_roughness *= map->mean[1];
@@ -89,15 +90,15 @@ static void fill_material_block(struct material_block *block, const struct scene
                    (material->ior == 1.0f ? MATERIAL_IOR_ONE : 0);
 }
 
-bool resident_upload_materials(struct resident *resident)
+bool gpu_scene_upload_materials(struct gpu_scene *gpu_scene)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     size_t count = scene->material_count ? scene->material_count : 1;
     struct material_block *materials = calloc(count, sizeof(*materials));
     struct texture_block *textures = calloc(count * TEXTURE_SLOTS, sizeof(*textures));
     bool done = materials && textures;
-    resident->texture_transforms = false;
-    resident->second_uv_set = false;
+    gpu_scene->texture_transforms = false;
+    gpu_scene->second_uv_set = false;
     for (uint32_t i = 0; done && i < scene->material_count; i++) {
         const struct scene_material *material = &scene->materials[i];
         fill_material_block(&materials[i], material);
@@ -108,22 +109,23 @@ bool resident_upload_materials(struct resident *resident)
             const struct scene_texture *texture = &material->textures[slot];
             materials[i].texture_mask |= 1u << slot;
             if (slot == SCENE_TEXTURE_METALLIC_ROUGHNESS)
-                scale_means(&materials[i],
-                            &resident->texture_spaces[TEXTURE_SPACE_DATA].places[texture->image]);
-            resident->texture_transforms = resident->texture_transforms || has_transform(texture);
-            resident->second_uv_set = resident->second_uv_set || texture->uv_set == 1;
-            fill_texture_block(&resident->texture_spaces[resident_texture_space(slot)],
+                scale_means(
+                    &materials[i],
+                    &gpu_scene->texture_spaces[TEXTURE_SPACE_DATA].image_slots[texture->image]);
+            gpu_scene->texture_transforms = gpu_scene->texture_transforms || has_transform(texture);
+            gpu_scene->second_uv_set = gpu_scene->second_uv_set || texture->uv_set == 1;
+            fill_texture_block(&gpu_scene->texture_spaces[gpu_scene_texture_space(slot)],
                                &textures[i * TEXTURE_SLOTS + (uint32_t)slot], texture);
         }
     }
     done = done &&
-           gpu_buffer_ensure(resident->gpu, &resident->materials, "materials", GPU_BUFFER_STATIC,
+           gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->materials, "materials", GPU_BUFFER_STATIC,
                              count * sizeof(*materials)) &&
-           gpu_buffer_ensure(resident->gpu, &resident->texture_blocks, "materials.textures",
+           gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->texture_blocks, "materials.textures",
                              GPU_BUFFER_STATIC, count * TEXTURE_SLOTS * sizeof(*textures));
     if (done) {
-        gpu_buffer_write(resident->materials, 0, count * sizeof(*materials), materials);
-        gpu_buffer_write(resident->texture_blocks, 0, count * TEXTURE_SLOTS * sizeof(*textures),
+        gpu_buffer_write(gpu_scene->materials, 0, count * sizeof(*materials), materials);
+        gpu_buffer_write(gpu_scene->texture_blocks, 0, count * TEXTURE_SLOTS * sizeof(*textures),
                          textures);
     }
     free(materials);

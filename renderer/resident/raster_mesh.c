@@ -83,9 +83,9 @@ static bool build(struct mesh_builder *builder)
     return true;
 }
 
-bool resident_upload_raster_mesh(struct resident *resident)
+bool gpu_scene_upload_raster_mesh(struct gpu_scene *gpu_scene)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     struct mesh_builder builder = {.scene = scene};
     builder.indices = malloc((scene->index_count + 1u) * sizeof(uint32_t));
     builder.placed = malloc((scene->vertex_count + 1u) * sizeof(uint32_t));
@@ -94,23 +94,23 @@ bool resident_upload_raster_mesh(struct resident *resident)
         memset(builder.placed, 0xff, scene->vertex_count * sizeof(uint32_t));
         done = build(&builder);
     }
-    gpu_geometry_destroy(&resident->geometry);
-    gpu_buffer_destroy(&resident->raster_vertices);
-    gpu_buffer_destroy(&resident->raster_indices);
+    gpu_geometry_destroy(&gpu_scene->geometry);
+    gpu_buffer_destroy(&gpu_scene->raster_vertices);
+    gpu_buffer_destroy(&gpu_scene->raster_indices);
     if (done) {
-        resident->raster_vertices =
-            gpu_buffer_create(resident->gpu, "geometry.raster_vertices", GPU_BUFFER_STATIC,
+        gpu_scene->raster_vertices =
+            gpu_buffer_create(gpu_scene->gpu, "geometry.raster_vertices", GPU_BUFFER_STATIC,
                               builder.count * sizeof(*builder.vertices), builder.vertices);
-        resident->raster_indices =
-            gpu_buffer_create(resident->gpu, "geometry.raster_indices", GPU_BUFFER_STATIC,
+        gpu_scene->raster_indices =
+            gpu_buffer_create(gpu_scene->gpu, "geometry.raster_indices", GPU_BUFFER_STATIC,
                               scene->index_count * sizeof(uint32_t), builder.indices);
-        done = resident->raster_vertices && resident->raster_indices;
+        done = gpu_scene->raster_vertices && gpu_scene->raster_indices;
     }
     if (done)
-        resident->geometry =
-            gpu_geometry_create(resident->gpu, resident->raster_vertices, resident->raster_indices);
+        gpu_scene->geometry = gpu_geometry_create(gpu_scene->gpu, gpu_scene->raster_vertices,
+                                                  gpu_scene->raster_indices);
     free(builder.vertices);
     free(builder.indices);
     free(builder.placed);
-    return done && resident->geometry != NULL;
+    return done && gpu_scene->geometry != NULL;
 }

@@ -7,10 +7,10 @@
 #include "renderer/resident/triangle_tree.h"
 
 // Where the scene lies, rounded to multiples of a power of two about as large as it is.
-static void choose_origin(struct resident *resident)
+static void choose_origin(struct gpu_scene *gpu_scene)
 {
     double low[3], high[3], extent = 0.0;
-    if (!scene_bounds(resident->scene, low, high))
+    if (!scene_bounds(gpu_scene->scene, low, high))
         return;
     for (int axis = 0; axis < 3; axis++)
         extent = fmax(extent, high[axis] - low[axis]);
@@ -18,93 +18,94 @@ static void choose_origin(struct resident *resident)
         return;
     double step = exp2(ceil(log2(extent)) + 1.0);
     for (int axis = 0; axis < 3; axis++)
-        resident->origin[axis] = step * round(0.5 * (low[axis] + high[axis]) / step);
+        gpu_scene->origin[axis] = step * round(0.5 * (low[axis] + high[axis]) / step);
 }
 
-void resident_place(const struct resident *resident, const float world[3], float out_place[3])
+void gpu_scene_from_world(const struct gpu_scene *gpu_scene, const float world[3],
+                          float out_position[3])
 {
     for (int axis = 0; axis < 3; axis++)
-        out_place[axis] = (float)((double)world[axis] - resident->origin[axis]);
+        out_position[axis] = (float)((double)world[axis] - gpu_scene->origin[axis]);
 }
 
-struct resident *resident_create(struct gpu *gpu, const struct scene *scene,
-                                 struct error *out_error)
+struct gpu_scene *gpu_scene_create(struct gpu *gpu, const struct scene *scene,
+                                   struct error *out_error)
 {
-    struct resident *resident = calloc(1, sizeof(*resident));
-    if (!resident) {
+    struct gpu_scene *gpu_scene = calloc(1, sizeof(*gpu_scene));
+    if (!gpu_scene) {
         error_set(out_error, "out of memory");
         return NULL;
     }
-    resident->gpu = gpu;
-    resident->scene = scene;
-    choose_origin(resident);
-    if (!resident_upload_geometry(resident) || !resident_upload_textures(resident) ||
-        !resident_upload_materials(resident) || !resident_upload_instances(resident) ||
-        !resident_upload_lights(resident) || !resident_upload_environment(resident)) {
+    gpu_scene->gpu = gpu;
+    gpu_scene->scene = scene;
+    choose_origin(gpu_scene);
+    if (!gpu_scene_upload_geometry(gpu_scene) || !gpu_scene_upload_textures(gpu_scene) ||
+        !gpu_scene_upload_materials(gpu_scene) || !gpu_scene_upload_instances(gpu_scene) ||
+        !gpu_scene_upload_lights(gpu_scene) || !gpu_scene_upload_environment(gpu_scene)) {
         error_set(out_error, "scene \"%s\" does not fit into GPU memory", scene->name);
-        resident_destroy(&resident);
+        gpu_scene_destroy(&gpu_scene);
         return NULL;
     }
-    resident_count_materials(resident);
-    resident->seen = scene->revisions;
-    return resident;
+    gpu_scene_count_materials(gpu_scene);
+    gpu_scene->seen = scene->revisions;
+    return gpu_scene;
 }
 
-void resident_destroy(struct resident **resident_slot)
+void gpu_scene_destroy(struct gpu_scene **gpu_scene_slot)
 {
-    struct resident *resident = *resident_slot;
-    *resident_slot = NULL;
-    if (!resident)
+    struct gpu_scene *gpu_scene = *gpu_scene_slot;
+    *gpu_scene_slot = NULL;
+    if (!gpu_scene)
         return;
-    gpu_geometry_destroy(&resident->geometry);
-    gpu_buffer_destroy(&resident->vertices);
-    gpu_buffer_destroy(&resident->indices);
-    gpu_buffer_destroy(&resident->raster_vertices);
-    gpu_buffer_destroy(&resident->raster_indices);
-    gpu_buffer_destroy(&resident->instance_blocks);
-    gpu_buffer_destroy(&resident->id_blocks);
-    gpu_buffer_destroy(&resident->materials);
-    gpu_buffer_destroy(&resident->texture_blocks);
-    gpu_buffer_destroy(&resident->lights);
-    gpu_buffer_destroy(&resident->area_lights);
-    gpu_buffer_destroy(&resident->environment);
+    gpu_geometry_destroy(&gpu_scene->geometry);
+    gpu_buffer_destroy(&gpu_scene->vertices);
+    gpu_buffer_destroy(&gpu_scene->indices);
+    gpu_buffer_destroy(&gpu_scene->raster_vertices);
+    gpu_buffer_destroy(&gpu_scene->raster_indices);
+    gpu_buffer_destroy(&gpu_scene->instance_blocks);
+    gpu_buffer_destroy(&gpu_scene->id_blocks);
+    gpu_buffer_destroy(&gpu_scene->materials);
+    gpu_buffer_destroy(&gpu_scene->texture_blocks);
+    gpu_buffer_destroy(&gpu_scene->lights);
+    gpu_buffer_destroy(&gpu_scene->area_lights);
+    gpu_buffer_destroy(&gpu_scene->environment);
     for (int space = 0; space < 2; space++) {
         for (uint32_t i = 0; i < MAX_CLASSES_PER_SPACE; i++)
-            gpu_texture_destroy(&resident->texture_spaces[space].classes[i]);
-        free(resident->texture_spaces[space].places);
+            gpu_texture_destroy(&gpu_scene->texture_spaces[space].classes[i]);
+        free(gpu_scene->texture_spaces[space].image_slots);
     }
-    triangle_tree_destroy(&resident->tree);
-    shadow_map_destroy(&resident->shadow_map);
-    gpu_texture_destroy(&resident->environment_levels);
-    gpu_texture_destroy(&resident->environment_background);
-    free(resident->instances);
-    free(resident->clusters);
-    free(resident);
+    bvh_destroy(&gpu_scene->bvh);
+    shadow_map_destroy(&gpu_scene->shadow_map);
+    gpu_texture_destroy(&gpu_scene->environment_levels);
+    gpu_texture_destroy(&gpu_scene->environment_background);
+    free(gpu_scene->instances);
+    free(gpu_scene->clusters);
+    free(gpu_scene);
 }
 
-bool resident_update(struct resident *resident, struct error *out_error)
+bool gpu_scene_update(struct gpu_scene *gpu_scene, struct error *out_error)
 {
-    const struct scene_revisions *now = &resident->scene->revisions;
-    struct scene_revisions *seen = &resident->seen;
+    const struct scene_revisions *now = &gpu_scene->scene->revisions;
+    struct scene_revisions *seen = &gpu_scene->seen;
     bool geometry = now->geometry != seen->geometry;
     bool materials = now->materials != seen->materials;
     bool transforms = now->transforms != seen->transforms;
     bool lights = now->lights != seen->lights;
     bool done = true;
     if (geometry)
-        done = done && resident_upload_geometry(resident) && resident_upload_textures(resident);
+        done = done && gpu_scene_upload_geometry(gpu_scene) && gpu_scene_upload_textures(gpu_scene);
     if (geometry || materials)
-        done = done && resident_upload_materials(resident);
+        done = done && gpu_scene_upload_materials(gpu_scene);
     if (geometry || materials || transforms)
-        done = done && resident_upload_instances(resident);
+        done = done && gpu_scene_upload_instances(gpu_scene);
     if (geometry || materials || transforms || lights)
-        done = done && resident_upload_lights(resident);
+        done = done && gpu_scene_upload_lights(gpu_scene);
     if (now->environment != seen->environment)
-        done = done && resident_upload_environment(resident);
-    resident_count_materials(resident);
+        done = done && gpu_scene_upload_environment(gpu_scene);
+    gpu_scene_count_materials(gpu_scene);
     if (!done)
         return error_set(out_error, "scene \"%s\" does not fit into GPU memory after an edit",
-                         resident->scene->name);
+                         gpu_scene->scene->name);
     *seen = *now;
     return true;
 }
@@ -122,10 +123,10 @@ static bool material_is_emissive(const struct scene_material *material)
             material->emissive[2] > 0.0f);
 }
 
-void resident_count_materials(struct resident *resident)
+void gpu_scene_count_materials(struct gpu_scene *gpu_scene)
 {
-    const struct scene *scene = resident->scene;
-    struct resident_counts *counts = &resident->counts;
+    const struct scene *scene = gpu_scene->scene;
+    struct gpu_scene_counts *counts = &gpu_scene->counts;
     counts->textured_materials = 0;
     counts->masked_materials = 0;
     counts->transparent_materials = 0;
@@ -142,7 +143,7 @@ void resident_count_materials(struct resident *resident)
     if (!counted)
         return;
     for (uint32_t i = 0; i < counts->instances; i++) {
-        const struct resident_instance *instance = &resident->instances[i];
+        const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
         uint32_t id = scene->primitives[instance->primitive].material;
         if (!instance->visible || counted[id])
             continue;
@@ -169,27 +170,27 @@ void resident_count_materials(struct resident *resident)
     free(counted);
 }
 
-void resident_bind(const struct resident *resident)
+void gpu_scene_bind(const struct gpu_scene *gpu_scene)
 {
-    struct gpu *gpu = resident->gpu;
-    gpu_bind_storage(gpu, BIND_INSTANCES, resident->instance_blocks);
-    gpu_bind_storage(gpu, BIND_ID_BLOCKS, resident->id_blocks);
-    gpu_bind_storage(gpu, BIND_VERTICES, resident->vertices);
-    gpu_bind_storage(gpu, BIND_INDICES, resident->indices);
-    gpu_bind_storage(gpu, BIND_MATERIALS, resident->materials);
-    gpu_bind_storage(gpu, BIND_TEXTURES, resident->texture_blocks);
-    gpu_bind_storage(gpu, BIND_LIGHTS, resident->lights);
-    gpu_bind_storage(gpu, BIND_AREA_LIGHTS, resident->area_lights);
-    gpu_bind_storage(gpu, BIND_ENVIRONMENT, resident->environment);
-    gpu_bind_texture(gpu, UNIT_SHADOW_MAP, shadow_map_texture(resident->shadow_map));
-    gpu_bind_texture(gpu, UNIT_ENVIRONMENT, resident->environment_levels);
-    gpu_bind_texture(gpu, UNIT_BACKGROUND, resident->environment_background);
-    if (resident->tree) {
-        gpu_bind_texture(gpu, UNIT_TREE_NODES, resident->tree->nodes);
-        gpu_bind_texture(gpu, UNIT_TREE_TRIANGLES, resident->tree->triangles);
+    struct gpu *gpu = gpu_scene->gpu;
+    gpu_bind_storage(gpu, BIND_INSTANCES, gpu_scene->instance_blocks);
+    gpu_bind_storage(gpu, BIND_ID_BLOCKS, gpu_scene->id_blocks);
+    gpu_bind_storage(gpu, BIND_VERTICES, gpu_scene->vertices);
+    gpu_bind_storage(gpu, BIND_INDICES, gpu_scene->indices);
+    gpu_bind_storage(gpu, BIND_MATERIALS, gpu_scene->materials);
+    gpu_bind_storage(gpu, BIND_TEXTURES, gpu_scene->texture_blocks);
+    gpu_bind_storage(gpu, BIND_LIGHTS, gpu_scene->lights);
+    gpu_bind_storage(gpu, BIND_AREA_LIGHTS, gpu_scene->area_lights);
+    gpu_bind_storage(gpu, BIND_ENVIRONMENT, gpu_scene->environment);
+    gpu_bind_texture(gpu, UNIT_SHADOW_MAP, shadow_map_texture(gpu_scene->shadow_map));
+    gpu_bind_texture(gpu, UNIT_ENVIRONMENT, gpu_scene->environment_levels);
+    gpu_bind_texture(gpu, UNIT_BACKGROUND, gpu_scene->environment_background);
+    if (gpu_scene->bvh) {
+        gpu_bind_texture(gpu, UNIT_BVH_NODES, gpu_scene->bvh->nodes);
+        gpu_bind_texture(gpu, UNIT_BVH_TRIANGLES, gpu_scene->bvh->triangles);
     }
     static const uint32_t units[2] = {UNIT_COLOR_CLASSES, UNIT_DATA_CLASSES};
     for (int space = 0; space < 2; space++)
-        for (uint32_t i = 0; i < resident->texture_spaces[space].class_count; i++)
-            gpu_bind_texture(gpu, units[space] + i, resident->texture_spaces[space].classes[i]);
+        for (uint32_t i = 0; i < gpu_scene->texture_spaces[space].class_count; i++)
+            gpu_bind_texture(gpu, units[space] + i, gpu_scene->texture_spaces[space].classes[i]);
 }

@@ -20,10 +20,10 @@
 #include "shared/work_groups.h"
 
 #define SHADOW_MAP_EDGE 2048u
-// Nearest shadow caster of a lamp, relative to the scene's diagonal; and the most it is in m, or
+// Nearest shadow caster of a light, relative to the scene's diagonal; and the most it is in m, or
 // something huge and far away would let nearer casters through.
 #define SHADOW_NEAR_FRACTION 1e-4f
-#define SHADOW_NEAR_MOST_M   1e-2f
+#define SHADOW_NEAR_MAX_M    1e-2f
 
 #define MAX_VIEW_CASCADES (RENDERER_MAX_VIEWS * MAX_CASCADES)
 
@@ -34,14 +34,14 @@ enum draw_kind { DRAW_OPAQUE, DRAW_MASKED, DRAW_TRANSPARENT, DRAW_KIND_COUNT };
 
 // Up to 2^ID_BLOCK_BITS triangles of a primitive: what is culled at once. Local space. All its
 // triangles face away from an eye if dot(center - eye, axis) >= cutoff * |center - eye| + radius.
-struct resident_cluster {
+struct gpu_scene_cluster {
     float center[3];
     float radius;
     float axis[3];
     float cutoff; // 2 where the triangles face too many ways to say
 };
 
-struct resident_instance {
+struct gpu_scene_instance {
     uint32_t node;
     float world_from_local[16]; // of the node, about the resident's origin
     uint32_t primitive;
@@ -58,18 +58,18 @@ struct resident_instance {
     float bounds_max[3]; // below renderer.h
 };
 
-struct resident_counts {
+struct gpu_scene_counts {
     uint32_t instances;
     uint32_t lights; // enabled punctual lights
     uint32_t ranged_lights;
     uint32_t area_lights;
     uint32_t large_area_lights; // of those: see area_lights.c
     uint32_t shadow_layers;
-    uint32_t unshadowed;         // lights that shall cast shadows, but there is no layer left
-    uint32_t flat_shadows;       // lights with one view
-    uint32_t cube_shadows;       // lights with six
-    uint32_t colored_primitives; // with vertex colours other than white
-    uint32_t textured_materials; // in use by a visible instance; likewise below
+    uint32_t unshadowed;          // lights that shall cast shadows, but there is no layer left
+    uint32_t single_view_shadows; // lights with one view
+    uint32_t point_shadows;       // lights with six
+    uint32_t colored_primitives;  // with vertex colours other than white
+    uint32_t textured_materials;  // in use by a visible instance; likewise below
     uint32_t masked_materials;
     uint32_t transparent_materials;
     uint32_t blinn_phong_materials;
@@ -85,21 +85,21 @@ struct resident_counts {
 struct texture_space {
     uint32_t class_count;
     struct gpu_texture *classes[MAX_CLASSES_PER_SPACE];
-    struct image_place {
+    struct image_slot {
         bool used;
         uint32_t class_number;
         uint32_t layer;
         float mean[4]; // linear
-    } * places;
+    } * image_slots;
 };
 
 enum { TEXTURE_SPACE_COLOR, TEXTURE_SPACE_DATA };
 
-struct resident {
+struct gpu_scene {
     struct gpu *gpu;
     const struct scene *scene;
     struct scene_revisions seen;
-    struct resident_counts counts;
+    struct gpu_scene_counts counts;
     // All places on the GPU count from here: near the scene, 0 for scenes about the world's origin,
     // and whole multiples of a power of two, so that moving there rounds nothing.
     double origin[3];
@@ -111,15 +111,15 @@ struct resident {
     struct gpu_buffer *raster_vertices;
     struct gpu_buffer *raster_indices; // triangle by triangle as `indices`, but turned
     struct gpu_geometry *geometry;     // of the two
-    struct resident_instance *instances;
-    struct resident_cluster *clusters; // of all primitives
-    uint32_t cluster_count;            // of all instances: the most draws there can be
-    bool drawable;                     // any triangle at all
+    struct gpu_scene_instance *instances;
+    struct gpu_scene_cluster *clusters; // of all primitives
+    uint32_t cluster_count;             // of all instances: the most draws there can be
+    bool drawable;                      // any triangle at all
     float bounds_min[3];
     float bounds_max[3];
     float diagonal_m; // of the bounds; 1 where there is no geometry
 
-    struct triangle_tree *tree; // of what gathering rays meet; NULL until asked for
+    struct bvh *bvh; // of what gathering rays meet; NULL until asked for
 
     struct gpu_buffer *materials;
     struct gpu_buffer *texture_blocks;
@@ -147,48 +147,49 @@ struct resident {
 };
 
 // Uploads everything; NULL with a message when memory ends. `scene` must outlive the result.
-struct resident *resident_create(struct gpu *gpu, const struct scene *scene,
-                                 struct error *out_error);
-void resident_destroy(struct resident **resident);
+struct gpu_scene *gpu_scene_create(struct gpu *gpu, const struct scene *scene,
+                                   struct error *out_error);
+void gpu_scene_destroy(struct gpu_scene **gpu_scene);
 
 // Uploads what the scene's revisions say has changed. False with a message when memory ends.
-bool resident_update(struct resident *resident, struct error *out_error);
+bool gpu_scene_update(struct gpu_scene *gpu_scene, struct error *out_error);
 
 // Parts of the above, one file each.
-bool resident_upload_geometry(struct resident *resident);
-bool resident_upload_raster_mesh(struct resident *resident);
-bool resident_build_clusters(struct resident *resident);
-bool resident_upload_instances(struct resident *resident);
-bool resident_upload_textures(struct resident *resident);
-bool resident_upload_materials(struct resident *resident);
-bool resident_upload_lights(struct resident *resident);
-bool resident_upload_environment(struct resident *resident);
-void resident_count_materials(struct resident *resident);
+bool gpu_scene_upload_geometry(struct gpu_scene *gpu_scene);
+bool gpu_scene_upload_raster_mesh(struct gpu_scene *gpu_scene);
+bool gpu_scene_build_clusters(struct gpu_scene *gpu_scene);
+bool gpu_scene_upload_instances(struct gpu_scene *gpu_scene);
+bool gpu_scene_upload_textures(struct gpu_scene *gpu_scene);
+bool gpu_scene_upload_materials(struct gpu_scene *gpu_scene);
+bool gpu_scene_upload_lights(struct gpu_scene *gpu_scene);
+bool gpu_scene_upload_environment(struct gpu_scene *gpu_scene);
+void gpu_scene_count_materials(struct gpu_scene *gpu_scene);
 
 // Makes resident->tree that of the geometry as it is now; cheap where it is already. False when
 // memory ends.
-bool resident_need_tree(struct resident *resident);
+bool gpu_scene_need_tree(struct gpu_scene *gpu_scene);
 
 // From the scene's world to that about the resident's origin; in place or not.
-void resident_place(const struct resident *resident, const float world[3], float out_place[3]);
+void gpu_scene_from_world(const struct gpu_scene *gpu_scene, const float world[3],
+                          float out_position[3]);
 
-// Distance of the near plane of lamps' shadow views.
-float resident_shadow_near_m(const struct resident *resident);
+// Distance of the near plane of lights' shadow views.
+float gpu_scene_shadow_near_m(const struct gpu_scene *gpu_scene);
 
 // Which space a texture slot reads from.
-int resident_texture_space(int slot);
+int gpu_scene_texture_space(int slot);
 
 // Binds all buffers and textures of the scene to their slots.
-void resident_bind(const struct resident *resident);
+void gpu_scene_bind(const struct gpu_scene *gpu_scene);
 
 // The orthographic view along `axis` (unit, the way that light travels) of a box, as deep as the
 // whole scene.
-void resident_directional_view(const struct resident *resident, const float axis[3],
-                               const float box_min[3], const float box_max[3],
-                               struct shadow_view_block *out_view);
+void gpu_scene_directional_view(const struct gpu_scene *gpu_scene, const float axis[3],
+                                const float box_min[3], const float box_max[3],
+                                struct shadow_view_block *out_view);
 
 // Finds the planar emitters among the visible instances. Returns their number.
-uint32_t resident_find_area_lights(struct resident *resident,
-                                   struct area_light_block out_lights[MAX_AREA_LIGHTS]);
+uint32_t gpu_scene_find_area_lights(struct gpu_scene *gpu_scene,
+                                    struct area_light_block out_lights[MAX_AREA_LIGHTS]);
 
 #endif

@@ -14,10 +14,10 @@ struct shadow_map {
     uint64_t epoch;
     struct gpu_texture *texture;
     bool cascade_taken[MAX_VIEW_CASCADES];
-    uint32_t lamps;    // layers 0 .. lamps - 1 exist for lamps
+    uint32_t lights;   // layers 0 .. lights - 1 exist for lights
     uint32_t cascades; // and as many more for cascades
     struct gpu_framebuffer
-        *framebuffers[MAX_LAYERS]; // lamps first, cascades from MAX_SHADOW_LAYERS
+        *framebuffers[MAX_LAYERS]; // lights first, cascades from MAX_SHADOW_LAYERS
 };
 
 struct shadow_map *shadow_map_create(struct gpu *gpu, uint32_t edge)
@@ -45,10 +45,10 @@ void shadow_map_destroy(struct shadow_map **map)
     *map = NULL;
 }
 
-static bool resize(struct shadow_map *map, uint32_t lamps, uint32_t cascades)
+static bool resize(struct shadow_map *map, uint32_t lights, uint32_t cascades)
 {
     destroy_texture(map);
-    map->lamps = lamps;
+    map->lights = lights;
     map->cascades = cascades;
     map->epoch++;
     map->texture = gpu_texture_create(map->gpu, &(struct gpu_texture_params){
@@ -56,12 +56,12 @@ static bool resize(struct shadow_map *map, uint32_t lamps, uint32_t cascades)
                                                     .format = GPU_FORMAT_DEPTH32F,
                                                     .width = map->edge,
                                                     .height = map->edge,
-                                                    .layers = lamps + cascades,
+                                                    .layers = lights + cascades,
                                                     .filter = GPU_FILTER_SHADOW_COMPARE,
                                                 });
     bool done = map->texture != NULL;
-    for (uint32_t i = 0; i < lamps + cascades && done; i++) {
-        uint32_t slot = i < lamps ? i : MAX_SHADOW_LAYERS + i - lamps;
+    for (uint32_t i = 0; i < lights + cascades && done; i++) {
+        uint32_t slot = i < lights ? i : MAX_SHADOW_LAYERS + i - lights;
         map->framebuffers[slot] =
             gpu_framebuffer_create(map->gpu, "shadow_map", NULL, map->texture, i);
         done = map->framebuffers[slot] != NULL;
@@ -69,7 +69,7 @@ static bool resize(struct shadow_map *map, uint32_t lamps, uint32_t cascades)
     return done;
 }
 
-bool shadow_map_reserve_lamps(struct shadow_map *map, uint32_t layers)
+bool shadow_map_reserve_lights(struct shadow_map *map, uint32_t layers)
 {
     assert(layers <= MAX_SHADOW_LAYERS);
     bool cascades = false;
@@ -77,11 +77,11 @@ bool shadow_map_reserve_lamps(struct shadow_map *map, uint32_t layers)
         cascades = cascades || map->cascade_taken[i];
     if (layers == 0 && !cascades && map->texture) {
         destroy_texture(map);
-        map->lamps = 0;
+        map->lights = 0;
         map->cascades = 0;
         map->epoch++;
     }
-    return layers <= map->lamps || resize(map, layers, map->cascades);
+    return layers <= map->lights || resize(map, layers, map->cascades);
 }
 
 uint32_t shadow_map_take_cascade(struct shadow_map *map)
@@ -89,7 +89,7 @@ uint32_t shadow_map_take_cascade(struct shadow_map *map)
     for (uint32_t i = 0; i < MAX_VIEW_CASCADES; i++) {
         if (map->cascade_taken[i])
             continue;
-        if (i >= map->cascades && !resize(map, map->lamps, i + 1))
+        if (i >= map->cascades && !resize(map, map->lights, i + 1))
             return UINT32_MAX;
         map->cascade_taken[i] = true;
         return i;
@@ -115,13 +115,13 @@ const struct gpu_texture *shadow_map_texture(const struct shadow_map *map)
 
 uint32_t shadow_map_cascade_layer(const struct shadow_map *map, uint32_t cascade)
 {
-    return map->lamps + cascade;
+    return map->lights + cascade;
 }
 
-const struct gpu_framebuffer *shadow_map_lamp_framebuffer(const struct shadow_map *map,
-                                                          uint32_t lamp)
+const struct gpu_framebuffer *shadow_map_light_framebuffer(const struct shadow_map *map,
+                                                           uint32_t light)
 {
-    return map->framebuffers[lamp];
+    return map->framebuffers[light];
 }
 
 const struct gpu_framebuffer *shadow_map_cascade_framebuffer(const struct shadow_map *map,

@@ -1,4 +1,4 @@
-// One depth texture array for all shadow maps: layers of the scene's lamps first, then layers that
+// One depth texture array for all shadow maps: layers of the scene's lights first, then layers that
 // views take for their cascades. One array, because a software renderer pays for every sampler that
 // a shader names.
 #ifndef VOXCAST_RENDERER_RESIDENT_SHADOW_LAYERS_H
@@ -12,8 +12,8 @@ struct shadow_map;
 struct shadow_map *shadow_map_create(struct gpu *gpu, uint32_t edge);
 void shadow_map_destroy(struct shadow_map **map);
 
-// Makes at least `layers` lamp layers. False when GPU memory ends.
-bool shadow_map_reserve_lamps(struct shadow_map *map, uint32_t layers);
+// Makes at least `layers` light layers. False when GPU memory ends.
+bool shadow_map_reserve_lights(struct shadow_map *map, uint32_t layers);
 
 // Takes a number for a cascade of a view, or gives it back. UINT32_MAX when GPU memory ends.
 uint32_t shadow_map_take_cascade(struct shadow_map *map);
@@ -28,8 +28,8 @@ uint64_t shadow_map_epoch(const struct shadow_map *map);
 
 // NULL while there is no layer.
 const struct gpu_texture *shadow_map_texture(const struct shadow_map *map);
-const struct gpu_framebuffer *shadow_map_lamp_framebuffer(const struct shadow_map *map,
-                                                          uint32_t lamp);
+const struct gpu_framebuffer *shadow_map_light_framebuffer(const struct shadow_map *map,
+                                                           uint32_t light);
 const struct gpu_framebuffer *shadow_map_cascade_framebuffer(const struct shadow_map *map,
                                                              uint32_t cascade);
 

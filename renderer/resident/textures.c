@@ -25,10 +25,10 @@ struct texture_class {
     uint32_t layers;
 };
 
-static uint32_t edge_log2_of(const struct resident *resident, const struct image *image)
+static uint32_t edge_log2_of(const struct gpu_scene *gpu_scene, const struct image *image)
 {
     uint32_t limit =
-        gpu_get_info(resident->gpu)->software ? MAX_SOFTWARE_EDGE_LOG2 : MAX_CLASS_EDGE_LOG2;
+        gpu_get_info(gpu_scene->gpu)->software ? MAX_SOFTWARE_EDGE_LOG2 : MAX_CLASS_EDGE_LOG2;
     uint32_t edge = image->width > image->height ? image->width : image->height;
     uint32_t log2 = MIN_CLASS_EDGE_LOG2;
     while (log2 < limit && (1u << log2) < edge)
@@ -36,7 +36,7 @@ static uint32_t edge_log2_of(const struct resident *resident, const struct image
     return log2;
 }
 
-int resident_texture_space(int slot)
+int gpu_scene_texture_space(int slot)
 {
     return COLOR_TEXTURE_SLOTS & (1u << slot) ? TEXTURE_SPACE_COLOR : TEXTURE_SPACE_DATA;
 }
@@ -110,31 +110,31 @@ static bool write_layer(struct gpu_texture *texture, uint32_t layer, const struc
 }
 
 // Marks the images that textures of the space refer to, and counts them by edge.
-static void find_uses(const struct resident *resident, int space_number,
+static void find_uses(const struct gpu_scene *gpu_scene, int space_number,
                       uint32_t out_counts[MAX_CLASS_EDGE_LOG2 + 1])
 {
-    const struct scene *scene = resident->scene;
-    struct image_place *places = resident->texture_spaces[space_number].places;
+    const struct scene *scene = gpu_scene->scene;
+    struct image_slot *image_slots = gpu_scene->texture_spaces[space_number].image_slots;
     for (uint32_t i = 0; i < scene->material_count; i++)
         for (int slot = 0; slot < SCENE_TEXTURE_SLOT_COUNT; slot++) {
             uint32_t image = scene->materials[i].textures[slot].image;
-            if (image >= scene->image_count || resident_texture_space(slot) != space_number ||
-                places[image].used)
+            if (image >= scene->image_count || gpu_scene_texture_space(slot) != space_number ||
+                image_slots[image].used)
                 continue;
-            places[image].used = true;
-            out_counts[edge_log2_of(resident, scene->images[image])]++;
+            image_slots[image].used = true;
+            out_counts[edge_log2_of(gpu_scene, scene->images[image])]++;
         }
 }
 
-static bool create_arrays(struct resident *resident, struct texture_space *space, bool color,
+static bool create_arrays(struct gpu_scene *gpu_scene, struct texture_space *space, bool color,
                           const struct texture_class *classes)
 {
     // One level instead of two halves the cost on a CPU; shaders dither the choice, so that steps
     // between levels do not show.
-    bool software = gpu_get_info(resident->gpu)->software;
+    bool software = gpu_get_info(gpu_scene->gpu)->software;
     for (uint32_t i = 0; i < space->class_count; i++) {
         space->classes[i] = gpu_texture_create(
-            resident->gpu,
+            gpu_scene->gpu,
             &(struct gpu_texture_params){
                 .label = "textures",
                 .format = color ? GPU_FORMAT_SRGB8_ALPHA8 : GPU_FORMAT_RGBA8,
@@ -152,34 +152,35 @@ static bool create_arrays(struct resident *resident, struct texture_space *space
     return true;
 }
 
-static bool upload_space(struct resident *resident, int space_number)
+static bool upload_space(struct gpu_scene *gpu_scene, int space_number)
 {
-    const struct scene *scene = resident->scene;
-    struct texture_space *space = &resident->texture_spaces[space_number];
+    const struct scene *scene = gpu_scene->scene;
+    struct texture_space *space = &gpu_scene->texture_spaces[space_number];
     bool color = space_number == TEXTURE_SPACE_COLOR;
     for (uint32_t i = 0; i < MAX_CLASSES_PER_SPACE; i++)
         gpu_texture_destroy(&space->classes[i]);
-    free(space->places);
-    space->places = calloc(scene->image_count ? scene->image_count : 1, sizeof(*space->places));
-    if (!space->places)
+    free(space->image_slots);
+    space->image_slots =
+        calloc(scene->image_count ? scene->image_count : 1, sizeof(*space->image_slots));
+    if (!space->image_slots)
         return false;
     uint32_t counts[MAX_CLASS_EDGE_LOG2 + 1] = {0}, class_of[MAX_CLASS_EDGE_LOG2 + 1] = {0};
     struct texture_class classes[MAX_CLASSES_PER_SPACE];
-    find_uses(resident, space_number, counts);
+    find_uses(gpu_scene, space_number, counts);
     space->class_count =
-        choose_classes(counts, gpu_get_info(resident->gpu)->software, classes, class_of);
-    if (!create_arrays(resident, space, color, classes))
+        choose_classes(counts, gpu_get_info(gpu_scene->gpu)->software, classes, class_of);
+    if (!create_arrays(gpu_scene, space, color, classes))
         return false;
     uint32_t next_layer[MAX_CLASSES_PER_SPACE] = {0};
     for (uint32_t i = 0; i < scene->image_count; i++) {
-        struct image_place *place = &space->places[i];
-        if (!place->used)
+        struct image_slot *image_entry = &space->image_slots[i];
+        if (!image_entry->used)
             continue;
-        place->class_number = class_of[edge_log2_of(resident, scene->images[i])];
-        place->layer = next_layer[place->class_number]++;
-        compute_mean(scene->images[i], color, place->mean);
-        if (!write_layer(space->classes[place->class_number], place->layer, scene->images[i],
-                         color))
+        image_entry->class_number = class_of[edge_log2_of(gpu_scene, scene->images[i])];
+        image_entry->layer = next_layer[image_entry->class_number]++;
+        compute_mean(scene->images[i], color, image_entry->mean);
+        if (!write_layer(space->classes[image_entry->class_number], image_entry->layer,
+                         scene->images[i], color))
             return false;
     }
     for (uint32_t i = 0; i < space->class_count; i++)
@@ -187,8 +188,8 @@ static bool upload_space(struct resident *resident, int space_number)
     return true;
 }
 
-bool resident_upload_textures(struct resident *resident)
+bool gpu_scene_upload_textures(struct gpu_scene *gpu_scene)
 {
-    return upload_space(resident, TEXTURE_SPACE_COLOR) &&
-           upload_space(resident, TEXTURE_SPACE_DATA);
+    return upload_space(gpu_scene, TEXTURE_SPACE_COLOR) &&
+           upload_space(gpu_scene, TEXTURE_SPACE_DATA);
 }

@@ -19,7 +19,7 @@ struct flat_triangle {
     float edge_b[3]; // from there
     float opacity;   // mean of a masked material
     float edge_c[3];
-    uint32_t flags; // TREE_LIT_DIRECTLY, TREE_ONE_SIDED
+    uint32_t flags; // BVH_LIT_DIRECTLY, BVH_ONE_SIDED
 };
 
 // What Embree's builder makes, from its own memory.
@@ -32,8 +32,8 @@ struct built_node {
 };
 
 // Everything on its way to the GPU.
-struct tree_work {
-    const struct resident *resident;
+struct bvh_work {
+    const struct gpu_scene *gpu_scene;
     float center[3];
     uint32_t triangle_count;
     struct flat_triangle *triangles; // in the order of the document
@@ -43,45 +43,47 @@ struct tree_work {
     struct flat_triangle *sorted; // in the order of the leaves
 };
 
-static bool blocks_light(const struct resident_instance *instance)
+static bool blocks_light(const struct gpu_scene_instance *instance)
 {
     return instance->visible && instance->group / DRAW_CULL_COUNT != DRAW_TRANSPARENT;
 }
 
 // Whether its emission reaches others as that of planar emitters.
-static bool emits_directly(const struct resident_instance *instance)
+static bool emits_directly(const struct gpu_scene_instance *instance)
 {
     return instance->emits_directly && !instance->large_emitter;
 }
 
-static const struct scene_material *material_of(const struct resident *resident,
-                                                const struct resident_instance *instance)
+static const struct scene_material *material_of(const struct gpu_scene *gpu_scene,
+                                                const struct gpu_scene_instance *instance)
 {
-    const struct scene *scene = resident->scene;
+    const struct scene *scene = gpu_scene->scene;
     return &scene->materials[scene->primitives[instance->primitive].material];
 }
 
 // Share of rays that its triangles stop.
-static float opacity_of(const struct resident *resident, const struct resident_instance *instance)
+static float opacity_of(const struct gpu_scene *gpu_scene,
+                        const struct gpu_scene_instance *instance)
 {
-    const struct scene_material *material = material_of(resident, instance);
+    const struct scene_material *material = material_of(gpu_scene, instance);
     if (material->alpha_mode != SCENE_ALPHA_MASK)
         return 1.0f;
     uint32_t image = material->textures[SCENE_TEXTURE_BASE_COLOR].image;
-    const struct texture_space *space = &resident->texture_spaces[TEXTURE_SPACE_COLOR];
-    return material->base_color[3] * (image == SCENE_NONE ? 1.0f : space->places[image].mean[3]);
+    const struct texture_space *space = &gpu_scene->texture_spaces[TEXTURE_SPACE_COLOR];
+    return material->base_color[3] *
+           (image == SCENE_NONE ? 1.0f : space->image_slots[image].mean[3]);
 }
 
 // Of all that the tree is made from.
-static uint64_t content_key(const struct resident *resident)
+static uint64_t content_key(const struct gpu_scene *gpu_scene)
 {
-    const struct scene_revisions *now = &resident->scene->revisions;
+    const struct scene_revisions *now = &gpu_scene->scene->revisions;
     uint64_t key = 1469598103934665603ull;
     key = (key ^ now->geometry) * 1099511628211ull;
     key = (key ^ now->transforms) * 1099511628211ull;
-    for (uint32_t i = 0; i < resident->counts.instances; i++) {
-        const struct resident_instance *instance = &resident->instances[i];
-        float opacity = opacity_of(resident, instance);
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
+        const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
+        float opacity = opacity_of(gpu_scene, instance);
         uint32_t bits;
         memcpy(&bits, &opacity, sizeof(bits));
         key = (key ^ bits) * 1099511628211ull;
@@ -92,20 +94,20 @@ static uint64_t content_key(const struct resident *resident)
     return key;
 }
 
-bool resident_need_tree(struct resident *resident)
+bool gpu_scene_need_tree(struct gpu_scene *gpu_scene)
 {
-    uint64_t key = content_key(resident);
-    if (resident->tree && resident->tree->key == key)
+    uint64_t key = content_key(gpu_scene);
+    if (gpu_scene->bvh && gpu_scene->bvh->key == key)
         return true;
-    triangle_tree_destroy(&resident->tree);
-    resident->tree = triangle_tree_create(resident);
-    if (resident->tree)
-        resident->tree->key = key;
-    return resident->tree != NULL;
+    bvh_destroy(&gpu_scene->bvh);
+    gpu_scene->bvh = bvh_create(gpu_scene);
+    if (gpu_scene->bvh)
+        gpu_scene->bvh->key = key;
+    return gpu_scene->bvh != NULL;
 }
 
-static void place_corner(const struct tree_work *work, const float matrix[16],
-                         const float position[3], double out[3])
+static void to_scene_corner(const struct bvh_work *work, const float matrix[16],
+                            const float position[3], double out[3])
 {
     for (int axis = 0; axis < 3; axis++)
         out[axis] = (double)matrix[axis] * position[0] + (double)matrix[4 + axis] * position[1] +
@@ -114,7 +116,7 @@ static void place_corner(const struct tree_work *work, const float matrix[16],
 }
 
 // Adds a triangle unless it has no area or reaches too far.
-static void add_triangle(struct tree_work *work, const double corners[3][3],
+static void add_triangle(struct bvh_work *work, const double corners[3][3],
                          const struct flat_triangle *traits)
 {
     struct flat_triangle triangle = *traits;
@@ -155,15 +157,15 @@ static bool is_mirrored(const float m[16])
     return m[0] * cross[0] + m[1] * cross[1] + m[2] * cross[2] < 0.0;
 }
 
-static void add_instance(struct tree_work *work, const struct resident_instance *instance)
+static void add_instance(struct bvh_work *work, const struct gpu_scene_instance *instance)
 {
-    const struct scene *scene = work->resident->scene;
+    const struct scene *scene = work->gpu_scene->scene;
     const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
     const float *matrix = instance->world_from_local;
     struct flat_triangle traits = {
-        .opacity = opacity_of(work->resident, instance),
-        .flags = (emits_directly(instance) ? TREE_LIT_DIRECTLY : 0) |
-                 (material_of(work->resident, instance)->double_sided ? 0 : TREE_ONE_SIDED),
+        .opacity = opacity_of(work->gpu_scene, instance),
+        .flags = (emits_directly(instance) ? BVH_LIT_DIRECTLY : 0) |
+                 (material_of(work->gpu_scene, instance)->double_sided ? 0 : BVH_ONE_SIDED),
     };
     bool mirrored = is_mirrored(matrix);
     for (uint32_t i = 0; i < instance->index_count / 3; i++) {
@@ -171,30 +173,31 @@ static void add_instance(struct tree_work *work, const struct resident_instance 
         for (int corner = 0; corner < 3; corner++) {
             uint32_t index = scene->indices[primitive->index_first + 3 * i + (uint32_t)corner];
             int at = mirrored && corner > 0 ? 3 - corner : corner;
-            place_corner(work, matrix, scene->vertices[index].position, corners[at]);
+            to_scene_corner(work, matrix, scene->vertices[index].position, corners[at]);
         }
         traits.id = instance->first_id + i + 1;
         add_triangle(work, corners, &traits);
     }
 }
 
-static bool gather_triangles(struct tree_work *work)
+static bool collect_triangles(struct bvh_work *work)
 {
-    const struct resident *resident = work->resident;
-    size_t most = 0;
-    for (uint32_t i = 0; i < resident->counts.instances; i++)
-        most += blocks_light(&resident->instances[i]) ? resident->instances[i].index_count / 3 : 0;
+    const struct gpu_scene *gpu_scene = work->gpu_scene;
+    size_t maximum = 0;
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
+        maximum +=
+            blocks_light(&gpu_scene->instances[i]) ? gpu_scene->instances[i].index_count / 3 : 0;
     for (int axis = 0; axis < 3; axis++)
-        work->center[axis] = 0.5f * (resident->bounds_min[axis] + resident->bounds_max[axis]);
-    work->triangles = malloc((most + 1) * sizeof(*work->triangles));
-    work->sorted = malloc((most + 1) * sizeof(*work->sorted));
+        work->center[axis] = 0.5f * (gpu_scene->bounds_min[axis] + gpu_scene->bounds_max[axis]);
+    work->triangles = malloc((maximum + 1) * sizeof(*work->triangles));
+    work->sorted = malloc((maximum + 1) * sizeof(*work->sorted));
     // Embree's primitives are aligned to their size.
-    work->boxes = aligned_alloc(32, (most + 1) * sizeof(*work->boxes));
+    work->boxes = aligned_alloc(32, (maximum + 1) * sizeof(*work->boxes));
     if (!work->triangles || !work->sorted || !work->boxes)
         return false;
-    for (uint32_t i = 0; i < resident->counts.instances; i++)
-        if (blocks_light(&resident->instances[i]))
-            add_instance(work, &resident->instances[i]);
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
+        if (blocks_light(&gpu_scene->instances[i]))
+            add_instance(work, &gpu_scene->instances[i]);
     return true;
 }
 
@@ -239,23 +242,23 @@ static void write_floats(uint32_t texel[4], const float values[3], uint32_t word
     texel[3] = word;
 }
 
-static uint32_t flatten(struct tree_work *work, const struct built_node *node);
+static uint32_t flatten(struct bvh_work *work, const struct built_node *node);
 
 // A child's word; its triangles go behind those before.
-static uint32_t flatten_child(struct tree_work *work, const struct built_node *child)
+static uint32_t flatten_child(struct bvh_work *work, const struct built_node *child)
 {
     if (!child)
-        return TREE_LEAF;
+        return BVH_LEAF;
     if (!child->leaf)
         return flatten(work, child);
     uint32_t first = work->sorted_count;
     for (uint32_t i = 0; i < child->count; i++)
         work->sorted[work->sorted_count++] = work->triangles[child->triangles[i]];
-    return TREE_LEAF | first << TREE_COUNT_BITS | child->count;
+    return BVH_LEAF | first << BVH_COUNT_BITS | child->count;
 }
 
-// Recursion goes as deep as the tree, TREE_MAX_DEPTH.
-static uint32_t flatten(struct tree_work *work, const struct built_node *node)
+// Recursion goes as deep as the tree, BVH_MAX_DEPTH.
+static uint32_t flatten(struct bvh_work *work, const struct built_node *node)
 {
     uint32_t number = work->node_count++;
     for (int i = 0; i < 2; i++) {
@@ -264,28 +267,27 @@ static uint32_t flatten(struct tree_work *work, const struct built_node *node)
                                      {-INFINITY, -INFINITY, -INFINITY}};
         const struct built_node *child = node->children[i];
         uint32_t word = flatten_child(work, child);
-        uint32_t(*texels)[4] = work->nodes + (size_t)number * TREE_NODE_TEXELS + 2 * i;
+        uint32_t(*texels)[4] = work->nodes + (size_t)number * BVH_NODE_TEXELS + 2 * i;
         write_floats(texels[0], child ? &bounds->lower_x : nothing[0], word);
         write_floats(texels[1], child ? &bounds->upper_x : nothing[1], 0);
     }
     return number;
 }
 
-static bool build(struct tree_work *work)
+static bool build(struct bvh_work *work)
 {
     RTCDevice device = rtcNewDevice(NULL);
-    RTCBVH bvh = device ? rtcNewBVH(device) : NULL;
+    RTCBVH embree_bvh = device ? rtcNewBVH(device) : NULL;
     // Inner nodes are fewer than leaves; the root is one even above a single leaf.
-    work->nodes =
-        calloc(((size_t)work->triangle_count + 1) * TREE_NODE_TEXELS, sizeof(uint32_t[4]));
+    work->nodes = calloc(((size_t)work->triangle_count + 1) * BVH_NODE_TEXELS, sizeof(uint32_t[4]));
     struct built_node *root = NULL;
-    if (bvh && work->nodes && work->triangle_count > 0) {
+    if (embree_bvh && work->nodes && work->triangle_count > 0) {
         struct RTCBuildArguments arguments = rtcDefaultBuildArguments();
         arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
         arguments.maxBranchingFactor = 2;
-        arguments.maxDepth = TREE_MAX_DEPTH - 1;
+        arguments.maxDepth = BVH_MAX_DEPTH - 1;
         arguments.maxLeafSize = MAX_LEAF_TRIANGLES;
-        arguments.bvh = bvh;
+        arguments.bvh = embree_bvh;
         arguments.primitives = work->boxes;
         arguments.primitiveCount = work->triangle_count;
         arguments.primitiveArrayCapacity = work->triangle_count;
@@ -295,7 +297,7 @@ static bool build(struct tree_work *work)
         arguments.createLeaf = create_leaf;
         root = rtcBuildBVH(&arguments);
     }
-    bool done = bvh && work->nodes && (root || work->triangle_count == 0);
+    bool done = embree_bvh && work->nodes && (root || work->triangle_count == 0);
     if (done) {
         struct built_node above = {.children = {root}};
         if (root)
@@ -307,8 +309,8 @@ static bool build(struct tree_work *work)
                                                  .upper_z = INFINITY};
         flatten(work, root && !root->leaf ? root : &above);
     }
-    if (bvh)
-        rtcReleaseBVH(bvh);
+    if (embree_bvh)
+        rtcReleaseBVH(embree_bvh);
     if (device)
         rtcReleaseDevice(device);
     return done;
@@ -318,7 +320,7 @@ static bool build(struct tree_work *work)
 static struct gpu_texture *upload(struct gpu *gpu, const char *label, const void *texels,
                                   size_t count)
 {
-    size_t width = (size_t)1 << TREE_ROW_BITS;
+    size_t width = (size_t)1 << BVH_ROW_BITS;
     size_t height = (count + width - 1) / width;
     height = height ? height : 1;
     if (height > gpu_get_info(gpu)->max_texture_edge)
@@ -339,34 +341,34 @@ static struct gpu_texture *upload(struct gpu *gpu, const char *label, const void
     return texture;
 }
 
-struct triangle_tree *triangle_tree_create(const struct resident *resident)
+struct bvh *bvh_create(const struct gpu_scene *gpu_scene)
 {
-    struct tree_work work = {.resident = resident};
-    struct triangle_tree *tree = calloc(1, sizeof(*tree));
-    if (tree && gather_triangles(&work) && build(&work)) {
-        memcpy(tree->center, work.center, sizeof(tree->center));
-        tree->triangle_count = work.sorted_count;
-        tree->nodes = upload(resident->gpu, "geometry.tree", work.nodes,
-                             (size_t)work.node_count * TREE_NODE_TEXELS);
-        tree->triangles = upload(resident->gpu, "geometry.tree", work.sorted,
-                                 (size_t)work.sorted_count * TREE_TRIANGLE_TEXELS);
+    struct bvh_work work = {.gpu_scene = gpu_scene};
+    struct bvh *bvh = calloc(1, sizeof(*bvh));
+    if (bvh && collect_triangles(&work) && build(&work)) {
+        memcpy(bvh->center, work.center, sizeof(bvh->center));
+        bvh->triangle_count = work.sorted_count;
+        bvh->nodes = upload(gpu_scene->gpu, "geometry.tree", work.nodes,
+                            (size_t)work.node_count * BVH_NODE_TEXELS);
+        bvh->triangles = upload(gpu_scene->gpu, "geometry.tree", work.sorted,
+                                (size_t)work.sorted_count * BVH_TRIANGLE_TEXELS);
     }
     free(work.triangles);
     free(work.sorted);
     free(work.boxes);
     free(work.nodes);
-    if (tree && (!tree->nodes || !tree->triangles))
-        triangle_tree_destroy(&tree);
-    return tree;
+    if (bvh && (!bvh->nodes || !bvh->triangles))
+        bvh_destroy(&bvh);
+    return bvh;
 }
 
-void triangle_tree_destroy(struct triangle_tree **tree_slot)
+void bvh_destroy(struct bvh **bvh_slot)
 {
-    struct triangle_tree *tree = *tree_slot;
-    *tree_slot = NULL;
-    if (!tree)
+    struct bvh *bvh = *bvh_slot;
+    *bvh_slot = NULL;
+    if (!bvh)
         return;
-    gpu_texture_destroy(&tree->nodes);
-    gpu_texture_destroy(&tree->triangles);
-    free(tree);
+    gpu_texture_destroy(&bvh->nodes);
+    gpu_texture_destroy(&bvh->triangles);
+    free(bvh);
 }

@@ -4,9 +4,9 @@
 
 #include "renderer/gpu/texture.h"
 
-struct resident;
+struct gpu_scene;
 
-struct triangle_tree {
+struct bvh {
     struct gpu_texture *nodes;     // layouts: see TREE_ in shaders/shared/bvh.h
     struct gpu_texture *triangles; // in world space, relative to `center`
     float center[3];
@@ -16,7 +16,7 @@ struct triangle_tree {
 
 // Of the visible triangles that light does not pass through; degenerate ones are left out. Cost: a
 // build by all processors, some 0.1 s for 250,000 triangles. NULL when memory ends.
-struct triangle_tree *triangle_tree_create(const struct resident *resident);
-void triangle_tree_destroy(struct triangle_tree **tree);
+struct bvh *bvh_create(const struct gpu_scene *gpu_scene);
+void bvh_destroy(struct bvh **bvh);
 
 #endif

@@ -38,19 +38,19 @@ static void split_glb(const uint8_t *bytes, size_t size, byte_range *out_json, b
                     size);
     }
     uint64_t offset = 12;
-    for (uint32_t chunk = 0; offset + 8 <= length; chunk++) {
+    for (uint32_t batch = 0; offset + 8 <= length; batch++) {
         uint64_t chunk_size = read_u32(bytes + offset);
         uint32_t kind = read_u32(bytes + offset + 4);
         if (chunk_size > length - offset - 8) {
-            import_fail("GLB chunk %u of %llu bytes ends beyond the file's %llu", chunk,
+            import_fail("GLB chunk %u of %llu bytes ends beyond the file's %llu", batch,
                         (unsigned long long)chunk_size, (unsigned long long)length);
         }
-        if (chunk == 0 && kind != GLB_CHUNK_JSON) {
+        if (batch == 0 && kind != GLB_CHUNK_JSON) {
             import_fail("the first GLB chunk is not JSON");
         }
-        if (chunk == 0) {
+        if (batch == 0) {
             *out_json = {bytes + offset + 8, (size_t)chunk_size};
-        } else if (chunk == 1 && kind == GLB_CHUNK_BIN) {
+        } else if (batch == 1 && kind == GLB_CHUNK_BIN) {
             *out_bin = {bytes + offset + 8, (size_t)chunk_size};
         }
         offset += 8 + ((chunk_size + 3) & ~3ull);

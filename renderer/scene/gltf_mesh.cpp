@@ -32,7 +32,7 @@ struct owned_triangle_mesh {
 // One primitive on its way: its attributes and the file's vertices that it uses.
 struct gltf_primitive {
     const tinygltf::Primitive &source;
-    std::string place;
+    std::string location;
     gltf_elements positions;
     std::vector<uint32_t> used; // positions in the attributes, by vertex of the mesh
 };
@@ -53,11 +53,11 @@ static bool get_attribute(gltf_import &import, const gltf_primitive &primitive, 
     }
     out = gltf_get_elements(import, accessor);
     if (out.components < components_low || out.components > components_high) {
-        import_fail("%s: %s has %u components; allowed are %u to %u", primitive.place.c_str(), name,
-                    out.components, components_low, components_high);
+        import_fail("%s: %s has %u components; allowed are %u to %u", primitive.location.c_str(),
+                    name, out.components, components_low, components_high);
     }
     if (out.count < primitive.positions.count) {
-        import_fail("%s: %s has %u elements, POSITION has %u", primitive.place.c_str(), name,
+        import_fail("%s: %s has %u elements, POSITION has %u", primitive.location.c_str(), name,
                     out.count, primitive.positions.count);
     }
     return true;
@@ -80,13 +80,14 @@ static std::vector<uint32_t> read_corners(gltf_import &import, const gltf_primit
                        indices.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                        indices.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     if (!is_unsigned || indices.components != 1) {
-        import_fail("%s: indices must be unsigned integers, one a vertex", primitive.place.c_str());
+        import_fail("%s: indices must be unsigned integers, one a vertex",
+                    primitive.location.c_str());
     }
     corners.resize(indices.count);
     for (uint32_t i = 0; i < indices.count; i++) {
         corners[i] = gltf_read_index(indices, i);
         if (corners[i] >= vertex_count) {
-            import_fail("%s: index %u of %u vertices", primitive.place.c_str(), corners[i],
+            import_fail("%s: index %u of %u vertices", primitive.location.c_str(), corners[i],
                         vertex_count);
         }
     }
@@ -129,7 +130,7 @@ static void keep_triangles(gltf_import &import, const gltf_primitive &primitive,
                                                           : corners.size() - 2;
     if (mode == GLTF_MODE_TRIANGLES && corners.size() % 3 != 0) {
         gltf_warn_once(import, "%s: the incomplete last triangle is dropped",
-                       primitive.place.c_str());
+                       primitive.location.c_str());
     }
     size_t unusable = 0;
     out.reserve(triangle_count * 3);
@@ -155,7 +156,7 @@ static void keep_triangles(gltf_import &import, const gltf_primitive &primitive,
         gltf_warn_once(import,
                        "%s: %zu triangles with positions that are not finite or beyond "
                        "%g m are dropped",
-                       primitive.place.c_str(), unusable, (double)SCENE_MAX_COORDINATE_M);
+                       primitive.location.c_str(), unusable, (double)SCENE_MAX_COORDINATE_M);
     }
 }
 
@@ -191,16 +192,16 @@ static void read_uv(gltf_import &import, const gltf_primitive &primitive, uint32
     for (uint32_t i = 0; i < mesh.vertex_count; i++) {
         float *uv = mesh.vertices[i].uv[set];
         gltf_read_element(elements, primitive.used[i], uv, 2);
-        bool mended = false;
+        bool unusable_found = false;
         for (int axis = 0; axis < 2; axis++) {
             if (!(std::fabs(uv[axis]) <= GLTF_MAX_UV)) {
                 uv[axis] = 0;
-                mended = true;
+                unusable_found = true;
                 gltf_warn_once(import, "%s: %s values that are not finite or huge are taken as 0",
-                               primitive.place.c_str(), name);
+                               primitive.location.c_str(), name);
             }
         }
-        import.scene->rejects.vertices += mended;
+        import.scene->rejects.vertices += unusable_found;
     }
 }
 
@@ -239,7 +240,7 @@ static void read_normals(gltf_import &import, const gltf_primitive &primitive,
     import.scene->rejects.vertices += repaired;
     if (repaired > 0) {
         gltf_warn_once(import, "%s: %u normals that are zero or not finite are recomputed",
-                       primitive.place.c_str(), repaired);
+                       primitive.location.c_str(), repaired);
     }
 }
 
@@ -313,11 +314,11 @@ static void import_primitive(gltf_import &import, const tinygltf::Mesh &mesh_sou
                              gltf_primitive &primitive, uint32_t &mesh_id)
 {
     if (primitive.source.mode >= 0 && primitive.source.mode < GLTF_MODE_TRIANGLES) {
-        gltf_warn_once(import, "%s: points and lines are not drawn", primitive.place.c_str());
+        gltf_warn_once(import, "%s: points and lines are not drawn", primitive.location.c_str());
         return;
     }
     if (!get_attribute(import, primitive, "POSITION", 3, 3, primitive.positions)) {
-        gltf_warn_once(import, "%s: no POSITION, nothing to draw", primitive.place.c_str());
+        gltf_warn_once(import, "%s: no POSITION, nothing to draw", primitive.location.c_str());
         return;
     }
     std::vector<uint32_t> triangles;
@@ -347,7 +348,7 @@ static void import_primitive(gltf_import &import, const tinygltf::Mesh &mesh_sou
                             owned.mesh.indices, owned.mesh.index_count, material) == SCENE_NONE) {
         import_fail("%s: more than %u vertices, %u triangle corners, %u primitives or %u meshes, "
                     "or out of memory",
-                    primitive.place.c_str(), SCENE_MAX_VERTICES, SCENE_MAX_INDICES,
+                    primitive.location.c_str(), SCENE_MAX_VERTICES, SCENE_MAX_INDICES,
                     SCENE_MAX_PRIMITIVES, SCENE_MAX_MESHES);
     }
 }

@@ -266,22 +266,22 @@ class json_checker
     }
 
     // The nesting of the rules, not of the file, bounds this recursion.
-    void check_object(json &object, const rule *rules, const std::string &place)
+    void check_object(json &object, const rule *rules, const std::string &location)
     {
         if (!object.is_object()) {
-            import_fail("%s must be an object", place.c_str());
+            import_fail("%s must be an object", location.c_str());
         }
         object.erase("extras");
         auto extensions = object.find("extensions");
         if (extensions != object.end() && !extensions->is_object()) {
-            import_fail("%s.extensions must be an object", place.c_str());
+            import_fail("%s.extensions must be an object", location.c_str());
         }
         for (; rules->name; rules++) {
             auto found = object.find(rules->name);
             if (found != object.end()) {
-                check_value(*found, *rules, place);
+                check_value(*found, *rules, location);
             } else if (rules->required) {
-                import_fail("%s.%s is missing", place.c_str(), rules->name);
+                import_fail("%s.%s is missing", location.c_str(), rules->name);
             }
         }
     }
@@ -289,9 +289,9 @@ class json_checker
   private:
     json &root;
 
-    [[noreturn]] static void fail(const std::string &place, const rule &rule, const char *wanted)
+    [[noreturn]] static void fail(const std::string &location, const rule &rule, const char *wanted)
     {
-        import_fail("%s.%s must be %s", place.c_str(), rule.name, wanted);
+        import_fail("%s.%s must be %s", location.c_str(), rule.name, wanted);
     }
 
     size_t count_of(const char *target)
@@ -305,15 +305,15 @@ class json_checker
     }
 
     // As an integer, written as 1 or 1.0.
-    void check_integer(json &value, double low, double high, const std::string &place,
+    void check_integer(json &value, double low, double high, const std::string &location,
                        const rule &rule)
     {
         double number = value.is_number() ? value.get<double>() : NAN;
         if (!(number == std::floor(number))) {
-            fail(place, rule, "an integer");
+            fail(location, rule, "an integer");
         }
         if (number < low || number > high) {
-            import_fail("%s.%s is %.17g; allowed are %.0f to %.0f", place.c_str(), rule.name,
+            import_fail("%s.%s is %.17g; allowed are %.0f to %.0f", location.c_str(), rule.name,
                         number, low, high);
         }
         if (value.is_number_float()) {
@@ -321,103 +321,103 @@ class json_checker
         }
     }
 
-    void check_index(json &value, const std::string &place, const rule &rule)
+    void check_index(json &value, const std::string &location, const rule &rule)
     {
         size_t count = count_of(rule.target);
         if (count == 0 && value.is_number()) {
-            import_fail("%s.%s names an entry of %s, of which the file has none", place.c_str(),
+            import_fail("%s.%s names an entry of %s, of which the file has none", location.c_str(),
                         rule.name, rule.target);
         }
-        check_integer(value, 0, (double)count - 1, place, rule);
+        check_integer(value, 0, (double)count - 1, location, rule);
     }
 
-    static void check_number(json &value, const std::string &place, const rule &rule)
+    static void check_number(json &value, const std::string &location, const rule &rule)
     {
         if (!value.is_number() || !std::isfinite(value.get<double>())) {
-            fail(place, rule, "a finite number");
+            fail(location, rule, "a finite number");
         }
     }
 
-    static void check_array(const json &value, const std::string &place, const rule &rule)
+    static void check_array(const json &value, const std::string &location, const rule &rule)
     {
         if (!value.is_array()) {
-            fail(place, rule, "an array");
+            fail(location, rule, "an array");
         }
     }
 
-    void check_numbers(json &value, const std::string &place, const rule &rule)
+    void check_numbers(json &value, const std::string &location, const rule &rule)
     {
-        check_array(value, place, rule);
+        check_array(value, location, rule);
         if (value.size() != (size_t)rule.high) {
-            import_fail("%s.%s has %zu numbers; it must have %.0f", place.c_str(), rule.name,
+            import_fail("%s.%s has %zu numbers; it must have %.0f", location.c_str(), rule.name,
                         value.size(), rule.high);
         }
         for (json &number : value) {
-            check_number(number, place, rule);
+            check_number(number, location, rule);
         }
     }
 
-    void check_objects(json &value, const std::string &place, const rule &rule)
+    void check_objects(json &value, const std::string &location, const rule &rule)
     {
-        check_array(value, place, rule);
-        std::string name = (place == "root" ? "" : place + ".") + rule.name + "[";
+        check_array(value, location, rule);
+        std::string name = (location == "root" ? "" : location + ".") + rule.name + "[";
         for (size_t i = 0; i < value.size(); i++) {
             check_object(value[i], rule.rules, name + std::to_string(i) + "]");
         }
     }
 
-    void check_index_map(json &value, const std::string &place, const rule &rule)
+    void check_index_map(json &value, const std::string &location, const rule &rule)
     {
         if (!value.is_object()) {
-            fail(place, rule, "an object");
+            fail(location, rule, "an object");
         }
         for (json &index : value) {
-            check_index(index, place, rule);
+            check_index(index, location, rule);
         }
     }
 
-    void check_list(json &value, const std::string &place, const rule &rule)
+    void check_list(json &value, const std::string &location, const rule &rule)
     {
-        check_array(value, place, rule);
+        check_array(value, location, rule);
         for (json &item : value) {
             if (rule.kind == RULE_INDICES) {
-                check_index(item, place, rule);
+                check_index(item, location, rule);
             } else if (!item.is_string()) {
-                fail(place, rule, "an array of strings");
+                fail(location, rule, "an array of strings");
             }
         }
     }
 
-    void check_value(json &value, const rule &rule, const std::string &place)
+    void check_value(json &value, const rule &rule, const std::string &location)
     {
         switch (rule.kind) {
         case RULE_INDEX:
-            return check_index(value, place, rule);
+            return check_index(value, location, rule);
         case RULE_INDICES:
         case RULE_STRINGS:
-            return check_list(value, place, rule);
+            return check_list(value, location, rule);
         case RULE_INDEX_MAP:
-            return check_index_map(value, place, rule);
+            return check_index_map(value, location, rule);
         case RULE_INTEGER:
-            return check_integer(value, rule.low, rule.high, place, rule);
+            return check_integer(value, rule.low, rule.high, location, rule);
         case RULE_NUMBER:
-            return check_number(value, place, rule);
+            return check_number(value, location, rule);
         case RULE_NUMBERS:
-            return check_numbers(value, place, rule);
+            return check_numbers(value, location, rule);
         case RULE_STRING:
             if (!value.is_string()) {
-                fail(place, rule, "a string");
+                fail(location, rule, "a string");
             }
             return;
         case RULE_BOOLEAN:
             if (!value.is_boolean()) {
-                fail(place, rule, "true or false");
+                fail(location, rule, "true or false");
             }
             return;
         case RULE_OBJECT:
-            return check_object(value, rule.rules, place + "." + rule.name);
+            return check_object(value, rule.rules, location + "." + rule.name);
         case RULE_OBJECTS:
-            return check_objects(value, place, rule);
+            return check_objects(value, location, rule);
         }
     }
 };

@@ -216,7 +216,7 @@ static void face_normal(const obj_document &document, const obj_face &face, doub
     }
 }
 
-static void gather_smooth_normals(obj_document &document)
+static void collect_smooth_normals(obj_document &document)
 {
     std::unordered_map<uint64_t, std::array<double, 3>> sums;
     for (const auto &entry : document.faces) {
@@ -264,14 +264,14 @@ static void fill_vertex(const obj_document &document, const obj_face &face,
     vertex.color[0] = vertex.color[1] = vertex.color[2] = vertex.color[3] = 1;
     if (corner.uv != OBJ_NO_INDEX) {
         const float *uv = document.uvs[(size_t)corner.uv].value;
-        bool mended = false;
+        bool repaired = false;
         for (int axis = 0; axis < 2; axis++) {
             float value = axis == 1 ? 1 - uv[1] : uv[0]; // OBJ's V points up
             bool usable = std::fabs(value) <= OBJ_MAX_UV;
             vertex.uv[0][axis] = usable ? value : 0;
-            mended = mended || !usable;
+            repaired = repaired || !usable;
         }
-        document.import->scene->rejects.vertices += mended;
+        document.import->scene->rejects.vertices += repaired;
     }
     if (corner.normal != OBJ_NO_INDEX) {
         memcpy(vertex.normal, document.normals[(size_t)corner.normal].value, sizeof(vertex.normal));
@@ -412,7 +412,7 @@ static void import_document(obj_import &import, const char *bytes, size_t size)
     }
     text.str("");
     check_corners(document);
-    gather_smooth_normals(document);
+    collect_smooth_normals(document);
     add_geometry(document);
     scene_update_world_transforms(import.scene);
 }

@@ -406,8 +406,8 @@ static void fill_ray(struct RTCRay *target, const struct ray *ray)
     target->flags = 0;
 }
 
-static bool find_nearest(const struct ray_scene *ray_scene, const struct ray *ray,
-                         struct RTCRayHit *out_query)
+static bool closest_hit(const struct ray_scene *ray_scene, const struct ray *ray,
+                        struct RTCRayHit *out_query)
 {
     fill_ray(&out_query->ray, ray);
     out_query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -560,7 +560,7 @@ bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3
                             .direction = {direction[0], direction[1], direction[2]},
                             .max_distance = max_distance};
     struct RTCRayHit query;
-    if (!find_nearest(ray_scene, &ray, &query))
+    if (!closest_hit(ray_scene, &ray, &query))
         return false;
     struct ray_crossing crossing = crossing_of(ray_scene, &query.hit, query.ray.tfar);
     const struct scene *scene = ray_scene->scene;

@@ -179,24 +179,24 @@ static bool is_somewhere(const float position[3])
 }
 
 // Replaces values that are not finite; true if there was any.
-static bool mend_values(float *values, uint32_t count, float value)
+static bool repair_values(float *values, uint32_t count, float value)
 {
-    bool mended = false;
+    bool repaired = false;
     for (uint32_t i = 0; i < count; i++)
         if (!isfinite(values[i])) {
             values[i] = value;
-            mended = true;
+            repaired = true;
         }
-    return mended;
+    return repaired;
 }
 
 // Directions lose all their parts with one: those that are left point elsewhere.
-static bool mend_direction(float direction[3])
+static bool repair_direction(float direction[3])
 {
-    bool mended = mend_values(direction, 3, 0.0f);
-    if (mended)
+    bool repaired = repair_values(direction, 3, 0.0f);
+    if (repaired)
         memset(direction, 0, 3 * sizeof(float));
-    return mended;
+    return repaired;
 }
 
 // Copies vertices; one that is nowhere comes to lie where `place` is, since no triangle keeps it.
@@ -205,20 +205,20 @@ static void copy_vertices(struct scene *scene, const struct scene_vertex *vertic
 {
     struct scene_vertex *target = scene->vertices + scene->vertex_count;
     static const float origin[3] = {0};
-    const float *place = origin;
-    for (uint32_t i = 0; i < vertex_count && place == origin; i++)
+    const float *known_position = origin;
+    for (uint32_t i = 0; i < vertex_count && known_position == origin; i++)
         if (is_somewhere(vertices[i].position))
-            place = vertices[i].position;
+            known_position = vertices[i].position;
     for (uint32_t i = 0; i < vertex_count; i++) {
         target[i] = vertices[i];
         if (!is_somewhere(target[i].position))
-            memcpy(target[i].position, place, sizeof(target[i].position));
-        bool mended = mend_direction(target[i].normal);
-        mended = mend_direction(target[i].tangent) || mended;
-        mended = mend_values(&target[i].tangent[3], 1, 1.0f) || mended;
-        mended = mend_values(&target[i].uv[0][0], 4, 0.0f) || mended;
-        mended = mend_values(target[i].color, 4, 1.0f) || mended;
-        scene->rejects.vertices += mended;
+            memcpy(target[i].position, known_position, sizeof(target[i].position));
+        bool repaired = repair_direction(target[i].normal);
+        repaired = repair_direction(target[i].tangent) || repaired;
+        repaired = repair_values(&target[i].tangent[3], 1, 1.0f) || repaired;
+        repaired = repair_values(&target[i].uv[0][0], 4, 0.0f) || repaired;
+        repaired = repair_values(target[i].color, 4, 1.0f) || repaired;
+        scene->rejects.vertices += repaired;
     }
 }
 
@@ -305,7 +305,7 @@ static uint32_t take_root_node(struct scene *scene, uint32_t light, const char *
 }
 
 // A place in the list of lights: a new one, or that of a removed light once there are many.
-static uint32_t find_light_place(const struct scene *scene)
+static uint32_t find_light_placement(const struct scene *scene)
 {
     uint32_t removed = 0, first = scene->light_count;
     for (uint32_t i = scene->light_count; i-- > 0;)
@@ -320,7 +320,7 @@ static uint32_t find_light_place(const struct scene *scene)
 uint32_t scene_add_light(struct scene *scene, const struct scene_light *light,
                          const float position[3], const float direction[3])
 {
-    uint32_t id = find_light_place(scene);
+    uint32_t id = find_light_placement(scene);
     if (id == scene->light_count && !GROW(scene, lights, light, 1, SCENE_MAX_LIGHTS))
         return SCENE_NONE;
     uint32_t node = take_root_node(scene, id, light->name);

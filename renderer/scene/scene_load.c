@@ -50,7 +50,7 @@ static struct scene *import_file(const char *path, struct error *out_error)
     return NULL;
 }
 
-// Glowing pictures (labels, gauges) light nothing; surfaces of constant emission are lamps.
+// Glowing pictures (labels, gauges) light nothing; surfaces of constant emission are lights.
 static bool is_lit(const struct scene *scene)
 {
     if (scene->light_count > 0) {

@@ -66,7 +66,7 @@ bool triangle_mesh_make_flat_normals(struct triangle_mesh *mesh)
 }
 
 // Sets the normals that are zero from the triangles around them.
-static void gather_missing_normals(struct triangle_mesh *mesh, double (*sums)[3])
+static void collect_missing_normals(struct triangle_mesh *mesh, double (*sums)[3])
 {
     for (uint32_t first = 0; first < mesh->index_count; first += 3) {
         double area_normal[3];
@@ -101,7 +101,7 @@ uint32_t triangle_mesh_repair_normals(struct triangle_mesh *mesh)
     }
     double(*sums)[3] = calloc(mesh->vertex_count, sizeof(*sums));
     if (sums) {
-        gather_missing_normals(mesh, sums);
+        collect_missing_normals(mesh, sums);
         free(sums);
     }
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {

@@ -324,14 +324,14 @@ bool triangle_mesh_make_tangents(struct triangle_mesh *mesh, uint32_t uv_set)
 {
     struct tangent_work work = {.mesh = mesh, .uv_set = uv_set};
     bool done = false;
-    size_t most_vertices = (size_t)mesh->vertex_count + mesh->index_count;
+    size_t max_vertices = (size_t)mesh->vertex_count + mesh->index_count;
     if (mesh->index_count == 0) {
         return true;
     }
-    if (most_vertices >= NO_VERTEX || !start_work(&work) || !weld_vertices(&work)) {
+    if (max_vertices >= NO_VERTEX || !start_work(&work) || !weld_vertices(&work)) {
         goto finish;
     }
-    struct scene_vertex *vertices = realloc(mesh->vertices, most_vertices * sizeof(*vertices));
+    struct scene_vertex *vertices = realloc(mesh->vertices, max_vertices * sizeof(*vertices));
     if (!vertices) {
         goto finish;
     }

@@ -1,16 +1,16 @@
 // What the irradiance cache knows about the surfaces in sight. In: G-buffer, cells, face records.
 // Out: radiance, as values that are shown without exposure and tone curve.
 //
-// AGE 0: openness, white where nothing near hides the hemisphere. AGE 1: how the record of each
-// pixel's voxel face has come about: green, its light is of this generation and its cones went
-// through geometry as it is; yellow, its light is of an older generation and will be gathered at
-// the hits of its cones; red, its cones went through older geometry; light blue, never traced, but
-// with light that another level has; blue, never traced; grey, there is no record. The older the
-// newest request of a pixel for it, the darker.
+// AGE 0: ambient visibility, white where nothing near hides the hemisphere. AGE 1: how the record
+// of each pixel's voxel face has come about: green, its light is of this generation and its cones
+// went through geometry as it is; yellow, its light is of an older generation and will be gathered
+// at the hits of its cones; red, its cones went through older geometry; light blue, never traced,
+// but with light that another level has; blue, never traced; grey, there is no record. The older
+// the newest request of a pixel for it, the darker.
 #define CELLS_ACCESS readonly
 #include "lib/gbuffer.glsl"
-#include "lib/irradiance_read.glsl"
-#include "lib/radiance.glsl"
+#include "lib/cache_lookup.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -31,13 +31,13 @@ uint record_at(vec3 world, vec3 normal)
     if (cell == VOXEL_NONE)
         return VOXEL_NONE;
     uint found = VOXEL_NONE;
-    float most = -2.0;
+    float maximum = -2.0;
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         uint words = cell_face(cell, face);
         float alike = dot(normal, face_direction(face));
-        if (words != VOXEL_NONE && faces[words + FACE_NORMAL] != VOXEL_NONE && alike > most) {
+        if (words != VOXEL_NONE && faces[words + FACE_NORMAL] != VOXEL_NONE && alike > maximum) {
             found = words;
-            most = alike;
+            maximum = alike;
         }
     }
     return found;

@@ -2,8 +2,8 @@
 // radiance, as values that are shown without exposure and tone curve.
 #include "lib/gbuffer.glsl"
 #include "lib/display.glsl"
-#include "lib/radiance.glsl"
-#if FLAT_SHADOWS
+#include "lib/radiance_buffer.glsl"
+#if SINGLE_VIEW_SHADOWS
 #include "lib/shadow.glsl"
 #endif
 
@@ -60,11 +60,11 @@ uint lights_of_tile(uvec2 pixel)
 
 vec3 cascade_color(surface s)
 {
-#if FLAT_SHADOWS
+#if SINGLE_VIEW_SHADOWS
     if (frame.cascade_count == 0u)
         return vec3(0.35 + 0.65 * clamp(dot(s.normal, s.view), 0.0, 1.0));
     uint view_number = frame.sun_shadow_view;
-    shadow_place at =
+    shadow_lookup at =
         project_to_shadow(view_number, s.position, s.geometric_normal, s.geometric_normal);
     uint cascade = refine_by_cascade(at);
     const vec3 colors[4] = {vec3(1.0, 0.35, 0.3), vec3(0.4, 1.0, 0.4), vec3(0.4, 0.55, 1.0),

@@ -55,11 +55,11 @@ uint count_bad(uint at, finite_check_shape shape, finite_check_masks masks)
     int level = int(shape.texture_level);
     uint width = uint(textureSize(checked, level).x);
     uint height = uint(textureSize(checked, level).y);
-    ivec3 place = ivec3(at % width, at / width % height, at / width / height);
+    ivec3 address = ivec3(at % width, at / width % height, at / width / height);
 #if TEXTURE == 1
-    vec4 texel = texelFetch(checked, place.xy, level);
+    vec4 texel = texelFetch(checked, address.xy, level);
 #else
-    vec4 texel = texelFetch(checked, place, level);
+    vec4 texel = texelFetch(checked, address, level);
 #endif
     uvec4 bits = floatBitsToUint(texel);
     return float_is_bad(bits.x) + float_is_bad(bits.y) + float_is_bad(bits.z) +

@@ -4,7 +4,7 @@
 // G-buffer, heads of the lists of transparent layers (LAYERS 1). Out: radiance, as values that are
 // shown without exposure and tone curve.
 #include "lib/gbuffer.glsl"
-#include "lib/radiance.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 

@@ -9,7 +9,7 @@
 #define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 #include "lib/display.glsl"
-#include "lib/radiance.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -19,14 +19,14 @@ layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
 #define IS_LIGHT     (SHOW == 3 || SHOW == 4)
 
 const float DIMMED = 0.3;
-const float LEAST_SHARE = 0.03;
+const float MIN_WEIGHT = 0.03;
 
 struct voxel_hit {
     bool found;
     ivec3 voxel;
-    bvec3 side; // axis of the face that was entered
-    float t;    // along the ray, whose forward part is 1
-    vec3 place; // within the voxel
+    bvec3 side;              // axis of the face that was entered
+    float t;                 // along the ray, whose forward part is 1
+    vec3 sub_voxel_position; // within the voxel
 };
 
 // Light times depth, and depth.
@@ -93,15 +93,15 @@ voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
         if (!voxel_in_level(level, hit.voxel))
             break;
     }
-    hit.place = clamp(origin + hit.t * direction - vec3(hit.voxel), 0.0, 1.0);
+    hit.sub_voxel_position = clamp(origin + hit.t * direction - vec3(hit.voxel), 0.0, 1.0);
     return hit;
 }
 
 // `least`: optical depth that tells a surface from the rim of one that faces another way.
-bool face_has_surface(uint level, ivec3 voxel, uint cell, uint face, float least)
+bool face_has_surface(uint level, ivec3 voxel, uint cell, uint face, float minimum)
 {
 #if FROM_TEXTURE
-    return face_texel(level, voxel, face).a > least;
+    return face_texel(level, voxel, face).a > minimum;
 #else
     uint words = cell == VOXEL_NONE ? VOXEL_NONE : cell_face(cell, face);
     return words != VOXEL_NONE && faces[words + FACE_NORMAL] != VOXEL_NONE;
@@ -112,19 +112,19 @@ bool face_has_surface(uint level, ivec3 voxel, uint cell, uint face, float least
 // if the voxel has no surface.
 uint shown_face(uint level, ivec3 voxel, uint cell, uint chosen, vec3 direction)
 {
-    float least = 0.0;
+    float minimum = 0.0;
 #if FROM_TEXTURE
-    least = LEAST_SHARE * total_depth(level, voxel);
+    minimum = MIN_WEIGHT * total_depth(level, voxel);
 #endif
-    if (face_has_surface(level, voxel, cell, chosen, least))
+    if (face_has_surface(level, voxel, cell, chosen, minimum))
         return chosen;
     uint best = VOXEL_NONE;
-    float most = -2.0;
+    float maximum = -2.0;
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         float towards = -dot(direction, face_direction(face));
-        if (towards > most && face_has_surface(level, voxel, cell, face, least)) {
+        if (towards > maximum && face_has_surface(level, voxel, cell, face, minimum)) {
             best = face;
-            most = towards;
+            maximum = towards;
         }
     }
     return best;
@@ -180,7 +180,7 @@ vec3 face_color(uint level, ivec3 voxel, uint face, uint words)
 // Dark edges where voxels are large enough for them, and a tone for each axis.
 float block_shade(voxel_hit hit, float pixels_per_voxel)
 {
-    vec3 rim = max(min(hit.place, 1.0 - hit.place), vec3(hit.side));
+    vec3 rim = max(min(hit.sub_voxel_position, 1.0 - hit.sub_voxel_position), vec3(hit.side));
     float line = 1.0 - clamp(min(rim.x, min(rim.y, rim.z)) * pixels_per_voxel - 0.5, 0.0, 1.0);
     float strength = 0.35 * clamp((pixels_per_voxel - 4.0) / 8.0, 0.0, 1.0);
     float tone = hit.side.y ? 1.0 : hit.side.x ? 0.82 : 0.91;

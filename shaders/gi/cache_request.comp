@@ -1,7 +1,7 @@
 // Pixels ask for the voxel faces they see: one pixel of each REQUEST_EDGE^2, another each frame.
 // In: G-buffer, cells. Out: the faces' newest request.
 #include "lib/gbuffer.glsl"
-#include "lib/irradiance.glsl"
+#include "lib/cache_request.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 

@@ -65,11 +65,11 @@ void main()
     }
 }
 #else
-uint count_classes(uint first, uint end, uint most)
+uint count_classes(uint first, uint end, uint maximum)
 {
     uint total = 0u;
     for (uint i = first; i < end; i++)
-        total += min(counters[COUNTER_CACHE_CLASSES + i], most);
+        total += min(counters[COUNTER_CACHE_CLASSES + i], maximum);
     return total;
 }
 
@@ -88,15 +88,15 @@ void main()
     // The budget is in faces to march. Looking up hits is cheap and shows an edit everywhere, so it
     // has the first claim, but for a quarter.
     uint to_march = count_classes(0u, CACHE_MARCH_CLASSES, voxels.list_capacity);
-    uint to_gather = count_classes(CACHE_MARCH_CLASSES, CACHE_CLASSES, voxels.list_capacity);
+    uint to_look_up = count_classes(CACHE_MARCH_CLASSES, CACHE_CLASSES, voxels.list_capacity);
     uint budget = voxels.trace_budget;
-    uint gathered = min(to_gather, (budget - min(to_march, budget / 4u)) * CACHE_MARCH_COST);
-    uint marched = min(to_march, budget - gathered / CACHE_MARCH_COST);
+    uint looked_up = min(to_look_up, (budget - min(to_march, budget / 4u)) * CACHE_MARCH_COST);
+    uint marched = min(to_march, budget - looked_up / CACHE_MARCH_COST);
     set_arguments(COUNTER_MARCH, marched);
-    set_arguments(COUNTER_GATHER, gathered);
+    set_arguments(COUNTER_LOOKUP, looked_up);
     // Those that the queue had no room for are left, too.
     counters[COUNTER_CACHE_LEFT] =
-        count_classes(0u, CACHE_CLASSES, 0xffffffffu) - marched - gathered;
-    counters[COUNTER_CACHE_TRACED] = marched * CACHE_MARCH_COST + gathered;
+        count_classes(0u, CACHE_CLASSES, 0xffffffffu) - marched - looked_up;
+    counters[COUNTER_CACHE_TRACED] = marched * CACHE_MARCH_COST + looked_up;
 }
 #endif

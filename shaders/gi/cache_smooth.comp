@@ -42,10 +42,10 @@ void main()
                 faces[from + FACE_NORMAL] == VOXEL_NONE)
                 continue;
             vec3 its = octahedral_decode(unpackSnorm2x16(faces[from + FACE_NORMAL]));
-            float share =
+            float fraction =
                 (step.x == 0 || step.y == 0 ? 2.0 : 1.0) * smoothstep(0.7, 0.95, dot(normal, its));
-            sum += share * face_light(from);
-            weight += share;
+            sum += fraction * face_light(from);
+            weight += fraction;
         }
         sum /= weight;
         sum.a = max(sum.a, 0.001); // 0 says that nothing is known

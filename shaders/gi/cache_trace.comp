@@ -4,7 +4,7 @@
 // MARCH 1: traces their cones, and keeps where each hits. MARCH 0: looks the light up at the hits.
 #define CONE_SMOOTH 0
 #include "lib/voxel_cells.glsl"
-#include "lib/gather.glsl"
+#include "lib/cone_hemisphere.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
@@ -13,7 +13,7 @@ layout(std430, binding = BIND_VOXEL_COUNTERS) buffer voxel_counter_storage
     uint counters[];
 };
 
-#include "lib/voxel_cut.glsl"
+#include "lib/clamp_half.glsl"
 
 layout(std430, binding = BIND_CACHE_QUEUE) readonly buffer queue_storage
 {
@@ -28,7 +28,7 @@ uint find_entry(uint number)
     uint count = counters[COUNTER_MARCH + 3u];
 #else
     uint urgency = CACHE_MARCH_CLASSES;
-    uint count = counters[COUNTER_GATHER + 3u];
+    uint count = counters[COUNTER_LOOKUP + 3u];
 #endif
     if (number >= count)
         return VOXEL_NONE;
@@ -58,17 +58,18 @@ void main()
     uint level = cells[cell * CELL_WORDS] >> CELL_LEVEL_BIT;
     vec3 corner = vec3(slot_voxel(level, cells[cell * CELL_WORDS] & CELL_SLOT_MASK));
     vec3 normal = octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL]));
-    uint bits = faces[words + FACE_PLACE];
-    vec3 place = vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0;
-    vec3 position = (corner + place) * voxels.levels[level].voxel_edge_m;
+    uint bits = faces[words + FACE_SUB_VOXEL_POSITION];
+    vec3 sub_voxel_position =
+        vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0;
+    vec3 position = (corner + sub_voxel_position) * voxels.levels[level].voxel_edge_m;
     // Neighbours look in different directions, so that interpolation between them averages more.
     ivec3 odd = ivec3(corner) & 1;
     float angle = float(odd.x + 2 * odd.y + 4 * odd.z) * (PI / 4.0);
-    gather_cones g =
-        begin_gather(position, normal, (bits & FACE_THIN) != 0u, vec2(cos(angle), sin(angle)));
-    gathered found = no_light();
+    hemisphere g =
+        begin_hemisphere(position, normal, (bits & FACE_THIN) != 0u, vec2(cos(angle), sin(angle)));
+    cone_sum found = no_cone_sum();
 #if MARCH
-    gathered along = no_light();
+    cone_sum along = no_cone_sum();
 #endif
     for (uint i = 0u; i < uint(voxels.cache_march.cone_count); i++) {
 #if MARCH
@@ -83,18 +84,19 @@ void main()
 #endif
     }
 #if MARCH
-    found.openness = along.openness;
+    found.ambient_visibility = along.ambient_visibility;
 #else
-    found.openness = face_light(words).a;
+    found.ambient_visibility = face_light(words).a;
 #endif
     vec3 before = face_light(words).rgb;
-    vec3 light = cut_to_half(found.light);
+    vec3 light = clamp_to_half(found.light);
     faces[words + FACE_LIGHT] = packHalf2x16(light.rg);
-    faces[words + FACE_LIGHT + 1u] = packHalf2x16(vec2(light.b, found.openness));
+    faces[words + FACE_LIGHT + 1u] = packHalf2x16(vec2(light.b, found.ambient_visibility));
     // Until neighbours are averaged, what is new shows itself.
     if ((state & FACE_MARCHED) == 0u) {
         faces[words + FACE_SHOWN] = faces[words + FACE_LIGHT];
-        faces[words + FACE_SHOWN + 1u] = packHalf2x16(vec2(light.b, max(found.openness, 0.001)));
+        faces[words + FACE_SHOWN + 1u] =
+            packHalf2x16(vec2(light.b, max(found.ambient_visibility, 0.001)));
     }
     uint epoch = MARCH != 0 ? voxels.geometry_epoch : state >> FACE_EPOCH_BIT;
     faces[words + FACE_STATE] = voxels.cache_generation |

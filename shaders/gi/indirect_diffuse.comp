@@ -5,11 +5,11 @@
 // From the cache, an invocation takes 2x2 pixels: irradiance changes little between them, so that
 // it is looked up once and again only for pixels that lie on another surface.
 #define CELLS_ACCESS readonly
-#include "lib/gathered.glsl"
+#include "lib/ray_accumulation.glsl"
 #include "lib/gbuffer.glsl"
-#include "lib/irradiance_read.glsl"
+#include "lib/cache_lookup.glsl"
 #include "lib/indirect_reflect.glsl"
-#include "lib/radiance.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -48,12 +48,12 @@ void main()
 }
 #else
 // What a pixel has gathered.
-vec4 found_at(uvec2 place)
+vec4 found_at(uvec2 texel)
 {
 #if FILTERED
-    return gathered_light[gathered_at(GATHERED_LIGHT_MEANS, place)];
+    return accumulated[accumulation_index(PLANE_DIFFUSE_MEAN, texel)];
 #else
-    return gathered_light[gathered_at(GATHERED_LIGHT, place)] / voxels.sample_count;
+    return accumulated[accumulation_index(PLANE_DIFFUSE, texel)] / voxels.sample_count;
 #endif
 }
 
@@ -69,8 +69,8 @@ vec4 upsampled_light(surface s, uvec2 pixel)
     float weight = 0.0;
     for (int i = 0; i < 4; i++) {
         ivec2 step = ivec2(i & 1, i >> 1);
-        ivec2 place = min(low + step, ivec2(gathered_size()) - 1);
-        surface other = gbuffer_load(uvec2(place) * 2u);
+        ivec2 texel = min(low + step, ivec2(accumulation_size()) - 1);
+        surface other = gbuffer_load(uvec2(texel) * 2u);
         if (other.shading >= SHADE_UNLIT)
             continue;
         vec2 near = mix(1.0 - t, t, vec2(step));
@@ -78,7 +78,7 @@ vec4 upsampled_light(surface s, uvec2 pixel)
                     voxels.levels[0].inverse_voxel_edge;
         float cosine = max(dot(other.normal, s.normal), 0.0);
         float w = (near.x * near.y + 1e-3) * exp(-4.0 * off) * pow(cosine, 8.0) + 1e-7;
-        sum += w * found_at(uvec2(place));
+        sum += w * found_at(uvec2(texel));
         weight += w;
     }
     return weight > 0.0 ? sum / weight : vec4(0.0);

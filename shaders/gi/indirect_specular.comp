@@ -4,10 +4,10 @@
 #define CONE_SKIP   1
 #include "lib/gbuffer.glsl"
 #include "lib/environment.glsl"
-#include "lib/gathered.glsl"
-#include "lib/gloss.glsl"
-#include "lib/gloss_rule.glsl"
-#include "lib/radiance.glsl"
+#include "lib/ray_accumulation.glsl"
+#include "lib/specular_cone.glsl"
+#include "lib/specular_classify.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE / 2, local_size_y = GROUP_EDGE / 2) in;
 
@@ -25,7 +25,7 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 // What rays have found for the square of pixels that shares them.
 vec3 mirrored_light(surface s, uvec2 pixel)
 {
-    return gathered_light[gathered_at(GATHERED_GLOSS_MEANS, pixel / uint(GATHER_STEP))].rgb;
+    return accumulated[accumulation_index(PLANE_SPECULAR_MEAN, pixel / uint(GATHER_STEP))].rgb;
 }
 #else
 #define SPECULAR_OCCLUSION s.occlusion
@@ -34,7 +34,7 @@ vec3 mirrored_light(surface s, uvec2 pixel)
     vec3 mirror = reflect(-s.view, s.normal);
     // A normal map can turn the mirror ray into the surface.
     mirror += s.geometric_normal * max(0.01 - dot(mirror, s.geometric_normal), 0.0);
-    return trace_gloss(s.position, s.geometric_normal, s.thin, normalize(mirror), s.roughness);
+    return trace_specular(s.position, s.geometric_normal, s.thin, normalize(mirror), s.roughness);
 }
 #endif
 
@@ -52,7 +52,7 @@ void main()
         if (any(greaterThanEqual(pixel, frame.render_size)))
             continue;
         surface s = gbuffer_load(pixel);
-        if (s.shading >= SHADE_UNLIT || !deserves_cone(s))
+        if (s.shading >= SHADE_UNLIT || !needs_specular_trace(s))
             continue;
         bool shared_light = SHARED != 0 && dot(s.normal, known_normal) > 0.99 &&
                             abs(s.roughness - known_roughness) < 0.1;

@@ -1,62 +1,62 @@
-// Which share of the light of lamps that have a size arrives at pixels: by a ray a picture to a
+// Which share of the light of lights that have a size arrives at pixels: by a ray a picture to a
 // place on each of them. Of every GATHER_STEP x GATHER_STEP pixels one has its turn. In: G-buffer,
 // tree of triangles, lights. Out: sums over the frames in which nothing moved.
 #include "lib/gbuffer.glsl"
-#include "lib/gathered.glsl"
-#include "lib/triangle_tree.glsl"
+#include "lib/ray_accumulation.glsl"
+#include "lib/bvh.glsl"
 #include "lib/lighting.glsl"
 #include "lib/ray_sequence.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-// Rays end just before the lamp itself.
+// Rays end just before the light itself.
 const float REACH = 0.999;
-// From lamp to lamp numbers move on (Roberts 2018, as ray_sequence.glsl).
-const vec3 NEXT_LAMP = vec3(0.8191725, 0.6710436, 0.5497005);
+// From light to light numbers move on (Roberts 2018, as ray_sequence.glsl).
+const vec3 NEXT_LIGHT = vec3(0.8191725, 0.6710436, 0.5497005);
 
 struct light_sum {
     vec3 whole; // that would arrive if nothing stood between
     vec3 seen;
 };
 
-void add_light(inout light_sum sum, surface s, vec3 light, vec3 place, float chance)
+void add_light(inout light_sum sum, surface s, vec3 light, vec3 texel, float chance)
 {
     if (max(light.r, max(light.g, light.b)) <= 0.0)
         return;
-    vec3 origin = tree_origin(s.position, s.geometric_normal);
-    vec3 way = place - frame.bvh_origin - origin;
+    vec3 origin = offset_ray_origin(s.position, s.geometric_normal);
+    vec3 to_light = texel - frame.bvh_origin - origin;
     sum.whole += light;
-    if (find_nearest(origin, way, REACH, chance).triangle == TREE_LEAF)
+    if (closest_hit(origin, to_light, REACH, chance).triangle == BVH_LEAF)
         sum.seen += light;
 }
 
 #if AREA_LIGHTS
 // A place on an emitter, so that each counts as what it sends to the surface: one of four, from
 // each quarter one (resampled importance sampling, Talbot et al. 2005).
-vec3 place_on(area_light_block light, surface s, vec3 u)
+vec3 point_on(area_light_block light, surface s, vec3 u)
 {
-    vec3 places[4];
+    vec3 points[4];
     float weights[4];
     float sum = 0.0;
     for (int i = 0; i < 4; i++) {
         vec2 at = 0.5 * (u.xy + vec2(i & 1, i >> 1));
-        places[i] = mix(mix(light.corners[0].xyz, light.corners[1].xyz, at.x),
+        points[i] = mix(mix(light.corners[0].xyz, light.corners[1].xyz, at.x),
                         mix(light.corners[3].xyz, light.corners[2].xyz, at.x), at.y);
-        vec3 way = places[i] - s.position;
-        float squared = max(dot(way, way), 1e-30);
-        weights[i] =
-            max(dot(way, s.normal), 0.0) * abs(dot(way, light.normal)) / (squared * squared);
+        vec3 to_light = points[i] - s.position;
+        float squared = max(dot(to_light, to_light), 1e-30);
+        weights[i] = max(dot(to_light, s.normal), 0.0) * abs(dot(to_light, light.normal)) /
+                     (squared * squared);
         sum += weights[i];
     }
     int chosen = 0;
     float left = u.z * sum;
     while (chosen < 3 && left >= weights[chosen])
         left -= weights[chosen++];
-    return places[chosen];
+    return points[chosen];
 }
 #endif
 
-vec3 share_of_lamps(surface s, vec3 u)
+vec3 light_visibility(surface s, vec3 u)
 {
     light_sum sum = light_sum(vec3(0.0), vec3(0.0));
 #if PUNCTUAL_LIGHTS
@@ -70,7 +70,7 @@ vec3 share_of_lamps(surface s, vec3 u)
         float angle = 2.0 * PI * u.y;
         vec3 offset = frame_about(l) * vec3(cos(angle), sin(angle), 0.0);
         add_light(sum, s, unshadowed, light.position + offset * (sqrt(u.x) * light.radius_m), u.z);
-        u = fract(u + NEXT_LAMP);
+        u = fract(u + NEXT_LIGHT);
     }
 #endif
 #if AREA_LIGHTS
@@ -78,8 +78,8 @@ vec3 share_of_lamps(surface s, vec3 u)
         area_light_block light = area_lights[i];
         if (light.shadow.first_view == NO_SHADOW)
             continue;
-        add_light(sum, s, area_unshadowed(s, light), place_on(light, s, u), fract(16.0 * u.z));
-        u = fract(u + NEXT_LAMP);
+        add_light(sum, s, area_unshadowed(s, light), point_on(light, s, u), fract(16.0 * u.z));
+        u = fract(u + NEXT_LIGHT);
     }
 #endif
     return mix(vec3(1.0), sum.seen / max(sum.whole, vec3(1e-30)),
@@ -88,24 +88,24 @@ vec3 share_of_lamps(surface s, vec3 u)
 
 void main()
 {
-    uvec2 place = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(place, gathered_size())))
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(texel, accumulation_size())))
         return;
     const uint STEP = uint(GATHER_STEP);
     uint picture = uint(voxels.sample_count) - 1u;
     uint turn = picture % (STEP * STEP);
     if (picture == 0u)
         for (uint i = 0u; i < STEP * STEP; i++) {
-            uvec2 other = place * STEP + uvec2(i % STEP, i / STEP);
+            uvec2 other = texel * STEP + uvec2(i % STEP, i / STEP);
             if (all(lessThan(other, frame.render_size)))
-                gathered_light[shares_at(other)] = vec4(0.0);
+                accumulated[visibility_index(other)] = vec4(0.0);
         }
-    uvec2 pixel = place * STEP + uvec2(turn % STEP, turn / STEP);
+    uvec2 pixel = texel * STEP + uvec2(turn % STEP, turn / STEP);
     if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     surface s = gbuffer_load(pixel);
     if (s.shading >= SHADE_UNLIT)
         return;
-    gathered_light[shares_at(pixel)] +=
-        vec4(share_of_lamps(s, ray_numbers(pixel, picture / (STEP * STEP))), 1.0);
+    accumulated[visibility_index(pixel)] +=
+        vec4(light_visibility(s, ray_numbers(pixel, picture / (STEP * STEP))), 1.0);
 }

@@ -48,7 +48,7 @@ vec3 diffuse_reflectance(surface s, float v_h)
 // The same for light that comes alike from everywhere: the mean over the cosine-weighted
 // hemisphere, in which Schlick's (1 - v.h)^5 is far smaller than for what mirrors at grazing view.
 // Polynomial fitted to the integral, off by 1e-5 at most.
-float mean_diffuse_share(surface s, float n_v)
+float mean_diffuse_fraction(surface s, float n_v)
 {
     float rise = 0.02821 + n_v * (-0.07998 + n_v * (0.08657 + n_v * (-0.04368 + n_v * 0.00897)));
     vec3 reflected = mix(s.f0, vec3(s.f90), rise);
@@ -57,7 +57,7 @@ float mean_diffuse_share(surface s, float n_v)
 
 // Share of light from everywhere that the specular part reflects anywhere: scale of F0 and share of
 // F90. Fitted to the integral of single-scattering GGX over both hemispheres, off by 0.004 at most.
-vec2 mean_specular_share(float roughness)
+vec2 mean_specular_albedo(float roughness)
 {
     float r = clamp(roughness, 0.0, 1.0);
     return vec2(0.95256 + r * (-0.05103 + r * (0.73159 + r * (-2.73923 + r * 1.51419))),

@@ -154,7 +154,7 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     result.hit_diameter_m = voxels.levels[0].voxel_edge_m;
     result.hit_density = 0.0;
     float passed = 1.0;
-    float most = 0.0;
+    float maximum = 0.0;
     float t = 0.0;
     float voxel = voxels.levels[0].voxel_edge_m;
     for (uint i = 0u; i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE; i++) {
@@ -176,8 +176,8 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
         float absorbed = passed * (1.0 - exp(-value.a * length_m));
         result.light += value.rgb * (absorbed / max(value.a, 1e-12));
         result.occlusion += absorbed * max(1.0 - middle / occlusion_reach_m, 0.0);
-        if (absorbed > most) {
-            most = absorbed;
+        if (absorbed > maximum) {
+            maximum = absorbed;
             result.hit_m = middle;
             result.hit_diameter_m = diameter;
             result.hit_density = value.a;

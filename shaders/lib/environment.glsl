@@ -79,7 +79,7 @@ vec3 environment_light(surface s)
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
     vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
-    vec3 diffuse = s.base_color * ((1.0 - s.metallic) * mean_diffuse_share(s, n_v)) *
+    vec3 diffuse = s.base_color * ((1.0 - s.metallic) * mean_diffuse_fraction(s, n_v)) *
                    environment_diffuse(s.normal);
     vec3 mirror = reflect(-s.view, s.normal);
     return (diffuse + reflected * environment_specular(mirror, s.roughness)) * s.occlusion;

@@ -62,7 +62,7 @@ vec3 fetch_direction(uint word)
 }
 
 // A ray, those through the pixels to the right and below, and the pixel that it is for.
-struct sight {
+struct camera_ray {
     vec3 origin; // world
     vec3 direction;
     vec3 dx; // added to the direction
@@ -70,9 +70,9 @@ struct sight {
     vec2 pixel;
 };
 
-sight pixel_sight(vec2 pixel)
+camera_ray pixel_camera_ray(vec2 pixel)
 {
-    return sight(frame.eye, ray_direction(pixel), frame.ray_dx, frame.ray_dy, pixel);
+    return camera_ray(frame.eye, ray_direction(pixel), frame.ray_dx, frame.ray_dy, pixel);
 }
 
 // `id` is a visibility id above 0; `eye` is where rays come from.
@@ -120,7 +120,7 @@ vec4 interpolate4(triangle t, uint word, vec3 w)
 }
 
 // What a transparent layer does to the light behind it.
-struct layer {
+struct transparent_layer {
     float alpha;        // coverage (alphaMode BLEND)
     float transmission; // share of the diffuse part that passes through
     float thickness_m;
@@ -161,7 +161,7 @@ struct material_point {
 };
 
 #if TEXTURED
-texture_point find_texture_point(triangle t, sight ray, vec3 weights)
+texture_point find_texture_point(triangle t, camera_ray ray, vec3 weights)
 {
     texture_point point;
     point.level_dither = dither_level(ray.pixel);
@@ -181,7 +181,7 @@ texture_point find_texture_point(triangle t, sight ray, vec3 weights)
 }
 
 // Loops over the slots in use, so that the sampler code is compiled once per space.
-void apply_textures(triangle t, sight ray, vec3 weights, material_block material,
+void apply_textures(triangle t, camera_ray ray, vec3 weights, material_block material,
                     inout material_point p)
 {
     texture_point point = find_texture_point(t, ray, weights);
@@ -217,8 +217,8 @@ void apply_textures(triangle t, sight ray, vec3 weights, material_block material
 }
 #endif
 
-material_point find_material_point(triangle t, sight ray, vec3 weights, material_block material,
-                                   vec3 normal)
+material_point find_material_point(triangle t, camera_ray ray, vec3 weights,
+                                   material_block material, vec3 normal)
 {
     material_point p;
     p.base = material.base_color;
@@ -241,7 +241,7 @@ material_point find_material_point(triangle t, sight ray, vec3 weights, material
 }
 
 // Evaluates what a ray sees of the triangle. Back faces are turned to the viewer.
-surface load_surface(uint id, sight ray, out layer through)
+surface load_surface(uint id, camera_ray ray, out transparent_layer through)
 {
     triangle t = fetch_triangle(id, ray.origin);
     vec3 weights = plane_weights(t, ray.direction);

@@ -1,20 +1,21 @@
 // What a surface makes of indirect irradiance. The occlusion map applies to this alone, since it
 // stands for detail that neither shadow maps nor voxels hold.
 #include "lib/environment.glsl"
-#include "lib/gloss_rule.glsl"
+#include "lib/specular_classify.glsl"
 
-// `light`: irradiance / pi in units of the volume's scale, and openness. Radiance in cd/m^2.
+// `light`: irradiance / pi in units of the volume's scale, and ambient visibility. Radiance in
+// cd/m^2.
 vec3 reflect_irradiance(surface s, vec4 light)
 {
     vec3 reflectance = s.base_color;
 #if SPECULAR
     float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
-    reflectance = s.base_color * ((1.0 - s.metallic) * mean_diffuse_share(s, n_v));
+    reflectance = s.base_color * ((1.0 - s.metallic) * mean_diffuse_fraction(s, n_v));
 #if INDIRECT_SPECULAR
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
-    if (!deserves_cone(s))
+    if (!needs_specular_trace(s))
         reflectance += f0 * scale_bias.x + f90 * scale_bias.y;
 #endif
 #endif

@@ -31,9 +31,9 @@ layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 #endif
 
 #if RAY_SHADOWS
-// Share of the light of lamps that have a size that arrives, by rays; whoever asks for direct light
-// says.
-vec3 seen_share = vec3(1.0);
+// Share of the light of lights that have a size that arrives, by rays; whoever asks for direct
+// light says.
+vec3 traced_visibility = vec3(1.0);
 #elif CONE_SHADOWS
 // Share of a light of a size that reaches a point, by a cone towards it; `hard` is what a shadow
 // map says of its middle. Voxels know nothing of what is nearer than they are large, but where
@@ -54,10 +54,10 @@ float soft_visibility(float hard, surface s, vec3 to_light, float distance_m, fl
     c.reach_m = (distance_m - (start + 2.0) * voxel) / (1.0 + 3.0 * c.tangent);
     cone_light found = trace_cone(c, 1.0);
     float penumbra = radius_m * found.hit_m / max(distance_m - found.hit_m, 1e-6);
-    float share = found.transmittance < 0.99 ? smoothstep(1.0, 3.0, penumbra / voxel) : 0.0;
+    float fraction = found.transmittance < 0.99 ? smoothstep(1.0, 3.0, penumbra / voxel) : 0.0;
     // Nor are the steps that voxels make of the surface itself occluders.
-    share *= smoothstep(1.0, 3.0, dot(to_light, normal) * found.hit_m / voxel);
-    return mix(hard, found.transmittance, share);
+    fraction *= smoothstep(1.0, 3.0, dot(to_light, normal) * found.hit_m / voxel);
+    return mix(hard, found.transmittance, fraction);
 }
 #endif
 
@@ -72,7 +72,7 @@ float distance_attenuation(float squared, float range_m)
     return attenuation;
 }
 
-// What a lamp would send by the surface to the viewer if nothing stood between; `l` is the way to
+// What a light would send by the surface to the viewer if nothing stood between; `l` is the way to
 // it.
 vec3 punctual_unshadowed(surface s, light_block light, out vec3 l)
 {
@@ -110,7 +110,7 @@ vec3 punctual_light(surface s, light_block light)
         return vec3(0.0);
 #if RAY_SHADOWS
     if (has_size(light))
-        return reflected * seen_share;
+        return reflected * traced_visibility;
 #endif
     float lit = shadow_visibility(light.shadow, light.position, s.position, s.geometric_normal, l);
 #if CONE_SHADOWS
@@ -198,15 +198,15 @@ vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reve
     // to at most one over the emitter.
     float widened = sqrt(alpha * alpha + solid_angle / (4.0 * PI));
     // At grazing angles the widening does not suffice; no surface reflects more than it receives.
-    vec3 share = min(specular_brdf_cosine(s, l, min(widened, 1.0)) * solid_angle, 1.0);
-    return share * light.radiance;
+    vec3 fraction = min(specular_brdf_cosine(s, l, min(widened, 1.0)) * solid_angle, 1.0);
+    return fraction * light.radiance;
 }
 
 #endif
 
 vec3 area_unshadowed(surface s, area_light_block light)
 {
-#if VOXEL_LIGHT
+#if INDIRECT_DIFFUSE
     // Cones gather the light of large emitters.
     if (light.in_voxels != 0u)
         return vec3(0.0);
@@ -239,7 +239,7 @@ vec3 area_light(surface s, area_light_block light)
         return vec3(0.0);
 #if RAY_SHADOWS
     if (light.shadow.first_view != NO_SHADOW)
-        return reflected * seen_share;
+        return reflected * traced_visibility;
 #endif
     vec3 to_light = safe_normalize(light.center - s.position, s.normal);
     float lit =

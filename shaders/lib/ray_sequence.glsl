@@ -35,7 +35,7 @@ vec3 sequence_point(uint i, uvec2 square)
 }
 
 // Random numbers of a pixel for its ray in a picture.
-vec3 ray_numbers(uvec2 place, uint picture)
+vec3 ray_numbers(uvec2 texel, uint picture)
 {
-    return sequence_point(picture * 16u + interleaved_order(place), place >> 2);
+    return sequence_point(picture * 16u + interleaved_order(texel), texel >> 2);
 }

@@ -8,7 +8,7 @@ layout(std430, binding = BIND_SHADOW_VIEWS) readonly buffer shadow_view_storage
     shadow_view_block shadow_views[];
 };
 
-// Layers of the scene's lamps, then those of the views' cascades.
+// Layers of the scene's lights, then those of the views' cascades.
 layout(binding = UNIT_SHADOW_MAP) uniform sampler2DArrayShadow shadow_map;
 
 #ifndef SHADOW_TAPS
@@ -49,17 +49,17 @@ bool is_inside(vec2 uv)
     return all(greaterThan(uv, vec2(margin))) && all(lessThan(uv, vec2(1.0 - margin)));
 }
 
-#if FLAT_SHADOWS
+#if SINGLE_VIEW_SHADOWS
 // A place in a shadow view: uv, layer, reversed depth; how lifting it off its surface moves it
 // there; and whether the view sees it.
-struct shadow_place {
+struct shadow_lookup {
     vec4 at;
     vec3 lift;
     bool inside;
 };
 
 // Position in a spot's or sun's view.
-shadow_place project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light)
+shadow_lookup project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light)
 {
     mat4 clip_from_world = shadow_views[view_number].clip_from_world;
     vec4 clip = clip_from_world * vec4(position, 1.0);
@@ -70,26 +70,26 @@ shadow_place project_to_shadow(uint view_number, vec3 position, vec3 normal, vec
     const vec3 uv_from_ndc = vec3(0.5, -0.5, 1.0);
     vec3 plain = clip.xyz / max(clip.w, 1e-20) * uv_from_ndc + vec3(0.5, 0.5, 0.0);
     vec3 moved = lifted.xyz / max(lifted.w, 1e-20) * uv_from_ndc + vec3(0.5, 0.5, 0.0);
-    shadow_place place;
-    place.at = vec4(plain.xy, float(view_number), plain.z);
-    place.lift = moved - plain;
-    place.inside = clip.w > 0.0 && is_inside(plain.xy);
-    return place;
+    shadow_lookup lookup;
+    lookup.at = vec4(plain.xy, float(view_number), plain.z);
+    lookup.lift = moved - plain;
+    lookup.inside = clip.w > 0.0 && is_inside(plain.xy);
+    return lookup;
 }
 
 // Refines a place in the sun's map of the whole scene to the smallest of the view's cascades that
 // holds it, where texels are smaller and so is the lift. All share the sun's axes, so a cascade is
 // a scale and an offset. Returns its number, frame.cascade_count for none.
-uint refine_by_cascade(inout shadow_place place)
+uint refine_by_cascade(inout shadow_lookup lookup)
 {
     uint found = frame.cascade_count;
-    shadow_place from = place;
+    shadow_lookup from = lookup;
     for (uint i = frame.cascade_count; i-- > 0u;) {
         vec3 scale = frame.cascades[i].scale;
         vec3 at = from.at.xyw * scale + frame.cascades[i].offset;
         if (is_inside(at.xy)) {
-            place.at = vec4(at.xy, frame.cascades[i].layer, at.z);
-            place.lift = from.lift * (scale / scale.x);
+            lookup.at = vec4(at.xy, frame.cascades[i].layer, at.z);
+            lookup.lift = from.lift * (scale / scale.x);
             found = i;
         }
     }
@@ -98,8 +98,8 @@ uint refine_by_cascade(inout shadow_place place)
 
 #endif
 
-#if CUBE_SHADOWS
-// Position in a lamp's cube of six views, as resident/lights.c lays them out: uv, layer, depth.
+#if POINT_SHADOWS
+// Position in a light's cube of six views, as resident/lights.c lays them out: uv, layer, depth.
 vec4 project_to_cube(uint first_view, vec3 origin, vec3 position, vec3 normal, vec3 to_light)
 {
     vec3 d = position - origin;
@@ -115,8 +115,8 @@ vec4 project_to_cube(uint first_view, vec3 origin, vec3 position, vec3 normal, v
     float up = is_y ? d.z : d.y;
     float face = (is_x ? 0.0 : is_y ? 2.0 : 4.0) + (along > 0.0 ? 0.0 : 1.0);
     float distance = max(abs(along), 1e-20);
-    vec2 place = vec2(right, -up) / (distance * SHADOW_FACE_MARGIN);
-    return vec4(0.5 + 0.5 * place, float(first_view) + face, frame.shadow_near_m / distance);
+    vec2 lookup = vec2(right, -up) / (distance * SHADOW_FACE_MARGIN);
+    return vec4(0.5 + 0.5 * lookup, float(first_view) + face, frame.shadow_near_m / distance);
 }
 #endif
 
@@ -128,18 +128,18 @@ float shadow_visibility(light_shadow shadow, vec3 origin, vec3 position, vec3 no
         return 1.0;
     vec4 at = vec4(0.0);
     bool inside = true;
-#if FLAT_SHADOWS
+#if SINGLE_VIEW_SHADOWS
     if (shadow.view_count == 1u) {
-        shadow_place place = project_to_shadow(shadow.first_view, position, normal, to_light);
+        shadow_lookup lookup = project_to_shadow(shadow.first_view, position, normal, to_light);
 #ifndef VIEWLESS // cascades are a view's own
         if (shadow.has_cascades != 0u)
-            refine_by_cascade(place);
+            refine_by_cascade(lookup);
 #endif
-        at = place.at + vec4(place.lift.xy, 0.0, place.lift.z);
-        inside = place.inside;
+        at = lookup.at + vec4(lookup.lift.xy, 0.0, lookup.lift.z);
+        inside = lookup.inside;
     }
 #endif
-#if CUBE_SHADOWS
+#if POINT_SHADOWS
     if (shadow.view_count == 6u)
         at = project_to_cube(shadow.first_view, origin, position, normal, to_light);
 #endif

@@ -27,7 +27,7 @@ uint cell_face(uint cell, uint face)
     return record == 0u ? VOXEL_NONE : (record - 1u) * voxels.face_record_words;
 }
 
-// Irradiance / pi / scale, and openness.
+// Irradiance / pi / scale, and ambient visibility.
 vec4 face_light(uint words)
 {
     return vec4(unpackHalf2x16(faces[words + FACE_LIGHT]),

@@ -50,14 +50,14 @@ uint touched_voxel_halves(overlap_triangle t, dvec3 low)
     precise dvec3 n = t.normal;
     precise dvec3 from = low - t.v[0];
     precise double plane = n.x * from.x + n.y * from.y + n.z * from.z;
-    precise double least = (min(n.x, 0.0lf) + min(n.y, 0.0lf) + min(n.z, 0.0lf)) * 0.5lf;
-    precise double most = (max(n.x, 0.0lf) + max(n.y, 0.0lf) + max(n.z, 0.0lf)) * 0.5lf;
+    precise double minimum = (min(n.x, 0.0lf) + min(n.y, 0.0lf) + min(n.z, 0.0lf)) * 0.5lf;
+    precise double maximum = (max(n.x, 0.0lf) + max(n.y, 0.0lf) + max(n.z, 0.0lf)) * 0.5lf;
     uint mask = 0u;
     for (uint i = 0u; i < 8u; i++) {
         uint ix = i & 1u, iy = (i >> 1) & 1u, iz = i >> 2;
         precise double at = plane + n.x * (0.5lf * double(ix)) + n.y * (0.5lf * double(iy)) +
                             n.z * (0.5lf * double(iz));
-        bool inside = at + least <= 0.0lf && at + most >= 0.0lf;
+        bool inside = at + minimum <= 0.0lf && at + maximum >= 0.0lf;
         uint projections = (xy >> (ix + 2u * iy)) & (yz >> (iy + 2u * iz)) & (zx >> (iz + 2u * ix));
         uint extents = (x >> ix) & (y >> iy) & (z >> iz);
         mask |= inside ? (projections & extents & 1u) << i : 0u;

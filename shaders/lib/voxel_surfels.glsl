@@ -14,8 +14,8 @@ layout(std430, binding = BIND_SURFELS) coherent buffer surfel_storage
 struct voxel_fragment {
     uint mask;
     uint weight;
-    vec3 normal; // unit
-    vec3 place;  // in the voxel, 0 to 1
+    vec3 normal;             // unit
+    vec3 sub_voxel_position; // in the voxel, 0 to 1
     float opacity;
     vec3 color;
     vec3 emission;
@@ -91,7 +91,7 @@ void add_fragment(uint surfel, voxel_fragment f)
         return;
     }
     add3(word + SURFEL_NORMAL, f.normal, 127.0, f.weight);
-    add3(word + SURFEL_PLACE, f.place, 255.0, f.weight);
+    add3(word + SURFEL_SUB_VOXEL_POSITION, f.sub_voxel_position, 255.0, f.weight);
     atomicAdd(surfels[word + SURFEL_OPACITY], uint(round(f.opacity * 255.0)) * f.weight);
 #if VOXEL_COLORS
     add3(word + SURFEL_COLOR, f.color, 255.0, f.weight);

@@ -1,7 +1,7 @@
 // Writes the radiance texture: premultiplied by optical depth, rgb = radiance * depth / scale and
 // a = optical depth across a voxel, so that filtering keeps what lies behind each other apart.
 #include "lib/voxel.glsl"
-#include "lib/voxel_cut.glsl"
+#include "lib/clamp_half.glsl"
 
 layout(binding = IMAGE_VOXEL_RADIANCE, rgba16f) uniform image3D voxel_image;
 
@@ -12,7 +12,7 @@ void store_voxel_face(uint level, ivec3 address, uint face, vec4 value)
     ivec3 texels = voxels.levels[level].texel_origin;
     int edge = voxels.levels[level].edge;
     ivec3 base = texels + ivec3(voxels.levels[level].face_stride * int(face), 0, 0);
-    value.rgb = cut_to_half(value.rgb);
+    value.rgb = clamp_to_half(value.rgb);
     imageStore(voxel_image, base + address, value);
     if (voxels.levels[level].wraps == 0u)
         return;

@@ -1,11 +1,11 @@
 // Direct light of punctual lights and planar emitters. In: G-buffer, lights, shadow maps;
-// RAY_SHADOWS: what rays have found to arrive from lamps that have a size. Out: radiance in cd/m^2,
-// added to what the environment pass wrote (FIRST 0), to the emission (1), or by itself (2: the
-// debug view of direct light).
+// RAY_SHADOWS: what rays have found to arrive from lights that have a size. Out: radiance in
+// cd/m^2, added to what the environment pass wrote (FIRST 0), to the emission (1), or by itself (2:
+// the debug view of direct light).
 #include "lib/gbuffer.glsl"
 #include "lib/lighting.glsl"
-#include "lib/radiance.glsl"
-#include "lib/seen_share.glsl"
+#include "lib/radiance_buffer.glsl"
+#include "lib/ray_shadow_filter.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -24,7 +24,7 @@ void main()
 #endif
     if (s.shading < SHADE_UNLIT) {
 #if RAY_SHADOWS
-        seen_share = seen_share_of(s, pixel);
+        traced_visibility = filtered_visibility(s, pixel);
 #endif
         sum += direct_light(s, pixel);
     }

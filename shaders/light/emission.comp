@@ -1,6 +1,6 @@
 // Emitted radiance only, for scenes without lights. In: G-buffer. Out: radiance in cd/m^2.
 #include "lib/gbuffer.glsl"
-#include "lib/radiance.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 

@@ -2,7 +2,7 @@
 // emission too. In: G-buffer, environment. Out: radiance in cd/m^2.
 #include "lib/gbuffer.glsl"
 #include "lib/environment.glsl"
-#include "lib/radiance.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -15,7 +15,7 @@ void main()
     vec3 sum = s.emission;
     if (s.shading == SHADE_BACKGROUND)
         sum = environment_radiance(-s.view);
-#if !VOXEL_LIGHT // whose cones see the environment
+#if !INDIRECT_DIFFUSE // whose cones see the environment
     else if (s.shading != SHADE_UNLIT)
         sum += environment_light(s);
 #endif

@@ -8,10 +8,10 @@
 #define CELLS_ACCESS readonly
 #include "lib/geometry.glsl"
 #include "lib/lighting.glsl"
-#include "lib/irradiance_read.glsl"
+#include "lib/cache_lookup.glsl"
 #include "lib/environment.glsl"
-#include "lib/gloss.glsl"
-#include "lib/radiance.glsl"
+#include "lib/specular_cone.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -71,7 +71,7 @@ uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
     return count;
 }
 
-vec3 transmittance(surface s, layer through)
+vec3 transmittance(surface s, transparent_layer through)
 {
     float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
     vec3 kept = vec3(1.0) - fresnel_schlick(s.f0, vec3(s.f90), n_v);
@@ -82,7 +82,7 @@ vec3 transmittance(surface s, layer through)
     return vec3(1.0 - through.alpha) + through.alpha * tint;
 }
 
-vec3 layer_radiance(surface s, layer through, uvec2 pixel)
+vec3 transparent_layer_radiance(surface s, transparent_layer through, uvec2 pixel)
 {
     if (s.shading == SHADE_UNLIT)
         return s.emission * through.alpha;
@@ -93,9 +93,9 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
 #if PUNCTUAL_LIGHTS || AREA_LIGHTS
     sum += direct_light(s, pixel);
 #endif
-#if VOXEL_LIGHT
+#if INDIRECT_DIFFUSE
     float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
-    vec3 diffuse = s.base_color * ((1.0 - s.metallic) * mean_diffuse_share(s, n_v));
+    vec3 diffuse = s.base_color * ((1.0 - s.metallic) * mean_diffuse_fraction(s, n_v));
     vec4 around = cached_irradiance(s.position, s.geometric_normal);
 #if AMBIENT_OCCLUSION
     diffuse *= around.a;
@@ -105,7 +105,7 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
     vec3 reflected = f0 * scale_bias.x + mix(s.f90, 1.0, s.metallic) * scale_bias.y;
-    sum += reflected * trace_gloss(s.position, s.geometric_normal, s.thin, mirror, s.roughness);
+    sum += reflected * trace_specular(s.position, s.geometric_normal, s.thin, mirror, s.roughness);
 #elif ENVIRONMENT
     sum += environment_light(s);
 #endif
@@ -116,7 +116,7 @@ vec3 layer_radiance(surface s, layer through, uvec2 pixel)
 // Light through the volume below a surface, by one cone along the refracted ray, as wide as
 // roughness makes it (KHR_materials_volume). Both faces of a slab bend the ray alike, so it is
 // taken to leave the volume as it came; where it cannot enter, it is reflected.
-vec3 refracted_light(surface s, layer through)
+vec3 refracted_light(surface s, transparent_layer through)
 {
     float ratio = 1.0 / max(through.ior, 1.0);
     vec3 inside = refract(-s.view, s.normal, ratio);
@@ -125,7 +125,7 @@ vec3 refracted_light(surface s, layer through)
     // The lobe of transmission narrows as the interface bends less.
     float roughness = s.roughness * clamp(2.0 * (1.0 - ratio), 0.0, 1.0);
     vec3 leaving = s.position + inside * through.thickness_m;
-    return trace_gloss(leaving, -s.geometric_normal * 0.5, false, normalize(inside), roughness);
+    return trace_specular(leaving, -s.geometric_normal * 0.5, false, normalize(inside), roughness);
 }
 #endif
 
@@ -142,14 +142,14 @@ void main()
     uint at = pixel.y * frame.render_size.x + pixel.x;
     vec3 sum = radiance[at].rgb;
     for (uint i = 0u; i < count; i++) {
-        layer through;
-        surface s = load_surface(layers[i], pixel_sight(vec2(pixel)), through);
+        transparent_layer through;
+        surface s = load_surface(layers[i], pixel_camera_ray(vec2(pixel)), through);
         vec3 behind = sum;
 #if REFRACTION
         if (through.thickness_m > 0.0 && through.transmission > 0.0)
             behind = mix(sum, refracted_light(s, through), through.alpha);
 #endif
-        sum = behind * transmittance(s, through) + layer_radiance(s, through, pixel);
+        sum = behind * transmittance(s, through) + transparent_layer_radiance(s, through, pixel);
     }
     radiance[at] = vec4(sum, 1.0);
 }

@@ -1,7 +1,7 @@
 // Automatic exposure from the luminance histogram. In: radiance. Out: exposure scale.
 // STAGE 0 counts log2 luminances; STAGE 1 (one group) takes their mean between two percentiles and
 // maps it to middle grey. Counts are integers, so the result does not depend on timing.
-#include "lib/radiance.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(std430, binding = BIND_EXPOSURE) buffer exposure_storage
 {

@@ -4,7 +4,7 @@
 // Scales bilinearly where the rendered size is not the shown one. DISPLAY_READY: values are shown
 // as they are (debug views). BLANK: plain grey, for debug views that have nothing to show.
 #include "lib/display.glsl"
-#include "lib/radiance.glsl"
+#include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 

@@ -53,8 +53,8 @@
 #define UNIT_DATA_CLASSES     10
 #define MAX_CLASSES_PER_SPACE 5
 #define UNIT_BACKGROUND       15
-#define UNIT_TREE_NODES       16
-#define UNIT_TREE_TRIANGLES   17
+#define UNIT_BVH_NODES        16
+#define UNIT_BVH_TRIANGLES    17
 #define UNIT_CHECKED          18
 
 #endif

@@ -19,11 +19,13 @@
 
 // A record of the irradiance cache: a voxel face that has a surface. Its words, and behind them one
 // for each cone: where it hits, what leaves the volume, and how wide it was there (as add_cone() of
-// shaders/lib/gather.glsl packs them). So long as geometry stays, a cone's light is one look-up.
-#define FACE_WORDS      12u // before the cones
-#define FACE_NORMAL     0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: no surface any more
-#define FACE_PLACE      1u  // mean, within the voxel, 3 x 10 bits; FACE_THIN
-#define FACE_LIGHT      2u  // two words: irradiance / pi / scale as 3 halves, openness as a half
+// shaders/lib/cone_hemisphere.glsl packs them). So long as geometry stays, a cone's light is one
+// look-up.
+#define FACE_WORDS              12u // before the cones
+#define FACE_NORMAL             0u // mean, octahedral, 2 x 16 bits; VOXEL_NONE: no surface any more
+#define FACE_SUB_VOXEL_POSITION 1u // mean, within the voxel, 3 x 10 bits; FACE_THIN
+#define FACE_LIGHT                                                                                 \
+    2u // two words: irradiance / pi / scale as 3 halves, ambient visibility as a half
 #define FACE_STATE      4u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
 #define FACE_REQUEST    5u  // frame of the newest request
 #define FACE_DIRECT     6u  // two words: emitted and directly lit radiance / scale, optical depth
@@ -38,17 +40,17 @@
 
 // A surfel gathers what a surface has in a voxel, of those triangles whose dominant axis and side
 // (0 to 5, as faces) agree. Sums are integers, so that no order of triangles changes them.
-#define SURFEL_WORDS        18u
-#define SURFEL_NEXT         0u
-#define SURFEL_KEY          1u // surface * 8 + face
-#define SURFEL_MASK         2u // bit x + 2 y + 4 z for each half of the voxel that is overlapped
-#define SURFEL_WEIGHT       3u
-#define SURFEL_NORMAL       4u    // 3 sums of weight * normal * 127
-#define SURFEL_PLACE        7u    // 3 sums of weight * place in the voxel * 255
-#define SURFEL_OPACITY      10u   // sum of weight * alpha * 255
-#define SURFEL_COLOR        11u   // 3 sums of weight * base colour texture * 255
-#define SURFEL_EMISSION     14u   // 3 sums of weight * emissive texture * 255
-#define SURFEL_WEIGHT_SCALE 512.0 // per square of the voxel's edge; at least 1 a triangle
+#define SURFEL_WORDS              18u
+#define SURFEL_NEXT               0u
+#define SURFEL_KEY                1u // surface * 8 + face
+#define SURFEL_MASK               2u // bit x + 2 y + 4 z for each half of the voxel that is overlapped
+#define SURFEL_WEIGHT             3u
+#define SURFEL_NORMAL             4u    // 3 sums of weight * normal * 127
+#define SURFEL_SUB_VOXEL_POSITION 7u    // 3 sums of weight * place in the voxel * 255
+#define SURFEL_OPACITY            10u   // sum of weight * alpha * 255
+#define SURFEL_COLOR              11u   // 3 sums of weight * base colour texture * 255
+#define SURFEL_EMISSION           14u   // 3 sums of weight * emissive texture * 255
+#define SURFEL_WEIGHT_SCALE       512.0 // per square of the voxel's edge; at least 1 a triangle
 // Beyond this weight no more is added: 255 times as much fits into 31 bits. More than 15,000
 // triangles of one surface that cross a voxel all over make up the mean by then.
 #define SURFEL_WEIGHT_MAX 8000000u
@@ -61,14 +63,14 @@
 #define COUNTER_FREE_SURFELS     3
 #define COUNTER_RETURNED_SURFELS 4
 #define COUNTER_OVERFLOW         5 // bits, as OVERFLOW_ says
-#define COUNTER_CUT              6 // values beyond what half floats hold, since the volume was made
+#define COUNTER_CLAMPED          6 // values beyond what half floats hold, since the volume was made
 #define COUNTER_CACHE_LEFT       7 // faces that the newest selection left stale
 #define COUNTER_CACHE_CHANGE     8 // largest relative change of a face this generation (float)
 #define COUNTER_CACHE_TRACED     9
 #define COUNTER_CACHE_PEAK       10 // largest light of one, likewise
 #define COUNTER_TILES            12 // arguments of the pass over large triangles
 #define COUNTER_MARCH            16 // arguments of tracing cones; number of faces
-#define COUNTER_GATHER           20 // likewise of looking up their hits
+#define COUNTER_LOOKUP           20 // likewise of looking up their hits
 #define COUNTER_CACHE_CLASSES    24 // faces of each class of urgency
 #define COUNTER_FACES            30
 #define COUNTER_FREE_FACES       31

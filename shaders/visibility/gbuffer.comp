@@ -16,6 +16,6 @@ void main()
         gbuffer_store_background(pixel);
         return;
     }
-    layer through;
-    gbuffer_store(pixel, load_surface(id, pixel_sight(vec2(pixel)), through));
+    transparent_layer through;
+    gbuffer_store(pixel, load_surface(id, pixel_camera_ray(vec2(pixel)), through));
 }

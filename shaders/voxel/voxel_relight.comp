@@ -3,10 +3,10 @@
 // face records but for their indirect light.
 //
 // A face's radiance is the mean of the surfels that face its way: emission, and reflectance times
-// direct and (FEEDBACK 1) indirect irradiance. Materials are looked up here, so that editing one
-// does not voxelize anything anew.
+// direct and (MULTI_BOUNCE 1) indirect irradiance. Materials are looked up here, so that editing
+// one does not voxelize anything anew.
 #include "lib/voxel_faces.glsl"
-#include "lib/voxel_radiate.glsl"
+#include "lib/voxel_store.glsl"
 #define SHADOW_TAPS 2u
 #define VIEWLESS    1
 #include "lib/lighting.glsl"
@@ -35,11 +35,11 @@ layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
 };
 
 // What faces one way in the voxel: sums, weighted by area.
-struct side {
+struct surfel_sum {
     float weight;
     uint mask;
     vec3 normal;
-    vec3 place;
+    vec3 sub_voxel_position;
     vec3 reflectance;
     vec3 emission;
     float opacity;
@@ -52,7 +52,7 @@ vec3 signed_sum(uint word)
 }
 
 // Adds a surfel's share to a side; `turn` is -1 for the back of a double-sided surface.
-void add_surfel(inout side s, uint word, material_block m, bool directly, float turn)
+void add_surfel(inout surfel_sum s, uint word, material_block m, bool directly, float turn)
 {
     float weight = float(surfels[word + SURFEL_WEIGHT]);
     float inverse = 1.0 / (255.0 * weight);
@@ -68,21 +68,21 @@ void add_surfel(inout side s, uint word, material_block m, bool directly, float 
     opacity = alpha != 0u ? clamp(opacity * m.base_color.a, 0.0, 1.0) : 1.0;
     float transmission = m.transmission * (1.0 - m.mean_metallic);
     // Mean reflectance over the hemisphere: the dielectric layer's, then the diffuse base, of which
-    // the layer holds back what Schlick has of v.h (0.0037 of the rise, see mean_diffuse_share()),
-    // or the metal; metallic and roughness as they are on average.
+    // the layer holds back what Schlick has of v.h (0.0037 of the rise, see
+    // mean_diffuse_fraction()), or the metal; metallic and roughness as they are on average.
     bool plain = (m.flags & MATERIAL_IOR_ONE) != 0u;
     vec3 f0 = plain ? vec3(0.0) : min(m.f0 * m.specular_color, 1.0) * m.specular;
     float f90 = plain ? 0.0 : m.specular;
-    vec2 share = mean_specular_share(m.mean_roughness);
+    vec2 fraction = mean_specular_albedo(m.mean_roughness);
     vec3 held = mix(f0, vec3(f90), 0.0037);
-    vec3 dielectric = f0 * share.x + f90 * share.y +
+    vec3 dielectric = f0 * fraction.x + f90 * fraction.y +
                       base * (1.0 - transmission) * (1.0 - max(held.r, max(held.g, held.b)));
-    vec3 reflectance = mix(dielectric, base * share.x + share.y, m.mean_metallic);
+    vec3 reflectance = mix(dielectric, base * fraction.x + fraction.y, m.mean_metallic);
     bool unlit = (m.flags & MATERIAL_SHADING_MASK) == SHADE_UNLIT;
     s.weight += weight;
     s.mask |= surfels[word + SURFEL_MASK];
     s.normal += signed_sum(word + SURFEL_NORMAL) * turn;
-    s.place += signed_sum(word + SURFEL_PLACE) / 255.0;
+    s.sub_voxel_position += signed_sum(word + SURFEL_SUB_VOXEL_POSITION) / 255.0;
     s.reflectance += weight * (unlit ? vec3(0.0) : clamp(reflectance, 0.0, 1.0));
     s.emission += weight * (unlit ? vec3(0.0) : emission);
     s.opacity += weight * opacity * (1.0 - transmission);
@@ -131,15 +131,16 @@ vec3 direct_irradiance(vec3 position, vec3 normal, bool thin, float voxel_m)
 }
 
 // Writes what a side has into a record of the irradiance cache, and adds its light to the sums.
-void store_side(uint cell, uint level, ivec3 voxel, uint i, side s, inout face_sums sums)
+void store_side(uint cell, uint level, ivec3 voxel, uint i, surfel_sum s, inout face_sums sums)
 {
     uint words = make_face(cell, level, voxel, i);
     if (words == VOXEL_NONE)
         return;
     float inverse = 1.0 / s.weight;
     vec3 normal = safe_normalize(s.normal, face_direction(i));
-    vec3 place = clamp(s.place * inverse, 0.0, 1.0);
-    vec3 position = voxels.anchor + (vec3(voxel) + place) * voxels.levels[level].voxel_edge_m;
+    vec3 sub_voxel_position = clamp(s.sub_voxel_position * inverse, 0.0, 1.0);
+    vec3 position =
+        voxels.anchor + (vec3(voxel) + sub_voxel_position) * voxels.levels[level].voxel_edge_m;
     vec3 albedo = clamp(s.reflectance * inverse, 0.0, 1.0);
     vec3 direct =
         s.emission * (inverse / voxels.radiance_scale) +
@@ -150,17 +151,17 @@ void store_side(uint cell, uint level, ivec3 voxel, uint i, side s, inout face_s
     // Halves that are touched overstate what hardly covers them, such as slivers.
     float covered = min(coverage(s.mask, i >> 1u), s.weight / float(SURFEL_WEIGHT_SCALE));
     float depth = covered * min(-log(max(1.0 - opacity, 1e-9)), float(VOXEL_MAX_DEPTH));
-    direct = cut_to_half(direct);
-    uvec3 packed_place = uvec3(place * 1023.0 + 0.5);
+    direct = clamp_to_half(direct);
+    uvec3 packed_position = uvec3(sub_voxel_position * 1023.0 + 0.5);
     uvec3 packed_albedo = uvec3(albedo * 1023.0 + 0.5);
     faces[words + FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));
-    faces[words + FACE_PLACE] = packed_place.x | (packed_place.y << 10) | (packed_place.z << 20) |
-                                (s.thin ? FACE_THIN : 0u);
+    faces[words + FACE_SUB_VOXEL_POSITION] = packed_position.x | (packed_position.y << 10) |
+                                             (packed_position.z << 20) | (s.thin ? FACE_THIN : 0u);
     faces[words + FACE_DIRECT] = packHalf2x16(direct.rg);
     faces[words + FACE_DIRECT + 1u] = packHalf2x16(vec2(direct.b, depth));
     faces[words + FACE_ALBEDO] =
         packed_albedo.x | (packed_albedo.y << 10) | (packed_albedo.z << 20);
-#if FEEDBACK
+#if MULTI_BOUNCE
     direct += albedo * face_light(words).rgb;
 #endif
     add_face(sums, normal, vec4(direct, depth));
@@ -181,9 +182,10 @@ void main()
         if (cells[cell * CELL_WORDS + CELL_FACES + i] != 0u)
             return;
 #endif
-    side sides[VOXEL_FACES];
+    surfel_sum surfel_sums[VOXEL_FACES];
     for (uint i = 0u; i < VOXEL_FACES; i++)
-        sides[i] = side(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, false);
+        surfel_sums[i] =
+            surfel_sum(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, false);
     for (uint at = cells[cell * CELL_WORDS + CELL_SURFEL]; at != VOXEL_NONE;
          at = surfels[at * SURFEL_WORDS + SURFEL_NEXT]) {
         uint word = at * SURFEL_WORDS;
@@ -191,23 +193,23 @@ void main()
         uint surface_word = surfaces[voxels.instance_count + (key >> 3)];
         material_block m = materials[surface_word & SURFACE_MATERIAL_MASK];
         bool directly = (surface_word & SURFACE_LIT_DIRECTLY) != 0u;
-        add_surfel(sides[key & 7u], word, m, directly, 1.0);
+        add_surfel(surfel_sums[key & 7u], word, m, directly, 1.0);
         if ((m.flags & MATERIAL_DOUBLE_SIDED) != 0u) {
-            add_surfel(sides[(key & 7u) ^ 1u], word, m, directly, -1.0);
-            sides[key & 7u].thin = true;
-            sides[(key & 7u) ^ 1u].thin = true;
+            add_surfel(surfel_sums[(key & 7u) ^ 1u], word, m, directly, -1.0);
+            surfel_sums[key & 7u].thin = true;
+            surfel_sums[(key & 7u) ^ 1u].thin = true;
         }
     }
     face_sums sums = no_face_sums();
     ivec3 voxel = slot_voxel(level, slot);
     for (uint i = 0u; i < VOXEL_FACES; i++) {
-        if (sides[i].weight == 0.0) {
+        if (surfel_sums[i].weight == 0.0) {
             uint old = cell_face(cell, i);
             if (old != VOXEL_NONE)
                 faces[old + FACE_NORMAL] = VOXEL_NONE;
             continue;
         }
-        store_side(cell, level, voxel, i, sides[i], sums);
+        store_side(cell, level, voxel, i, surfel_sums[i], sums);
     }
     store_faces(sums, level, slot);
 }

@@ -108,10 +108,10 @@ bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
     ivec3 region_low = to_abc(regions[region].low, w.axis);
     ivec3 region_high = region_low + to_abc(regions[region].size, w.axis) - 1;
     // Clamped before the conversion, so that nothing overflows.
-    dvec3 least = clamp(ceil(w.t.low) - 1.0lf, dvec3(region_low), dvec3(region_high) + 1.0lf);
-    dvec3 most = clamp(floor(w.t.high), dvec3(region_low) - 1.0lf, dvec3(region_high));
-    w.low = ivec3(least);
-    w.high = ivec3(most);
+    dvec3 minimum = clamp(ceil(w.t.low) - 1.0lf, dvec3(region_low), dvec3(region_high) + 1.0lf);
+    dvec3 maximum = clamp(floor(w.t.high), dvec3(region_low) - 1.0lf, dvec3(region_high));
+    w.low = ivec3(minimum);
+    w.high = ivec3(maximum);
     return all(lessThanEqual(w.low, w.high));
 }
 
@@ -188,7 +188,7 @@ void add_voxel(inout walk w, ivec3 voxel, uint mask)
     voxel_fragment f;
     f.mask = mask_from_abc(mask, w.axis);
     f.normal = w.normal;
-    f.place = from_abc(vec3(middle, float(depth - double(voxel.z))), w.axis);
+    f.sub_voxel_position = from_abc(vec3(middle, float(depth - double(voxel.z))), w.axis);
     f.opacity = 1.0;
     f.color = vec3(1.0);
     f.emission = vec3(1.0);
@@ -217,11 +217,12 @@ void walk_column(inout walk w, ivec2 column)
     dvec2 from = dvec2(column) - w.t.v[0].xy;
     double near = w.t.v[0].z - (n.x * from.x + n.y * from.y) / n.z;
     dvec2 slope = -n.xy / n.z;
-    double least = near + min(slope.x, 0.0lf) + min(slope.y, 0.0lf);
-    double most = near + max(slope.x, 0.0lf) + max(slope.y, 0.0lf);
+    double minimum = near + min(slope.x, 0.0lf) + min(slope.y, 0.0lf);
+    double maximum = near + max(slope.x, 0.0lf) + max(slope.y, 0.0lf);
     // A little wider, since these are rounded; the exact test decides.
-    int first = int(clamp(ceil(least - 1e-6lf) - 1.0lf, double(w.low.z), double(w.high.z) + 1.0lf));
-    int last = int(clamp(floor(most + 1e-6lf), double(w.low.z) - 1.0lf, double(w.high.z)));
+    int first =
+        int(clamp(ceil(minimum - 1e-6lf) - 1.0lf, double(w.low.z), double(w.high.z) + 1.0lf));
+    int last = int(clamp(floor(maximum + 1e-6lf), double(w.low.z) - 1.0lf, double(w.high.z)));
     for (int c = first; c <= last; c++) {
         ivec3 voxel = ivec3(column, c);
         uint mask = touched_voxel_halves(w.t, dvec3(voxel));

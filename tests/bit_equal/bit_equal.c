@@ -95,7 +95,7 @@ static void take_pixels(const struct frame_pixels *pixels, struct picture *pictu
     }
 }
 
-static void place_camera(const struct scene *scene, struct view_camera *out_camera)
+static void set_camera(const struct scene *scene, struct view_camera *out_camera)
 {
     static const struct view_camera fallback = {
         .eye = {2.0f, 1.5f, 3.0f}, .up = {0.0f, 1.0f, 0.0f}, .fov_y_rad = 0.9f};
@@ -119,7 +119,7 @@ static bool draw_frames(struct session *session, const struct shot *shot, struct
     params.settings.gi_method = shot->gi_method;
     if (shot->adjust)
         shot->adjust(&params.settings);
-    place_camera(session->scene, &params.camera);
+    set_camera(session->scene, &params.camera);
     for (uint32_t frame = 0; frame < shot->frame_count; frame++) {
         struct frame_pixels pixels;
         if (shot->moves && frame + 1 == shot->frame_count)
@@ -298,7 +298,7 @@ static void trace_paths(struct session *session)
         .width = WIDTH, .height = HEIGHT, .max_bounces = REFERENCE_UNLIMITED, .seed = 5};
     struct picture picture = {0};
     static float rgba[WIDTH * HEIGHT * 4];
-    place_camera(session->scene, &params.camera);
+    set_camera(session->scene, &params.camera);
     params.scene = snapshot_create(session->scene, false, &error);
     struct reference *reference = params.scene ? reference_create(&params, &error) : NULL;
     if (reference && picture_init(&picture, WIDTH, HEIGHT) &&

@@ -18,10 +18,10 @@
 #include "renderer/scene/image_decode.h"
 #include "voxcast_paths.h"
 
-#define WIDTH             192u
-#define HEIGHT            108u
-#define MAX_DIFFERENCE    5
-#define MAX_OUTLIER_SHARE 0.001
+#define WIDTH                192u
+#define HEIGHT               108u
+#define MAX_DIFFERENCE       5
+#define MAX_OUTLIER_FRACTION 0.001
 
 struct golden {
     char name[64];
@@ -122,7 +122,7 @@ static bool compare(const struct golden *golden, const uint8_t *rgb)
         outliers += largest > MAX_DIFFERENCE;
         worst = largest > worst ? largest : worst;
     }
-    bool same = difference && outliers <= MAX_OUTLIER_SHARE * WIDTH * HEIGHT;
+    bool same = difference && outliers <= MAX_OUTLIER_FRACTION * WIDTH * HEIGHT;
     printf("%-34s %s  worst %3d/255, %u of %u pixels beyond %d/255\n", golden->name,
            same ? "ok    " : "FAILED", worst, outliers, WIDTH * HEIGHT, MAX_DIFFERENCE);
     if (!same) {

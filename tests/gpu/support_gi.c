@@ -177,7 +177,7 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double gi_quantile(const struct test_picture *picture, double share)
+double gi_quantile(const struct test_picture *picture, double fraction)
 {
     size_t count = (size_t)picture->width * picture->height;
     float *values = malloc(count * sizeof(float));
@@ -185,7 +185,7 @@ double gi_quantile(const struct test_picture *picture, double share)
     for (size_t i = 0; i < count; i++)
         values[i] = picture->pixels[4 * i];
     qsort(values, count, sizeof(float), compare_floats);
-    double value = values[(size_t)(share * (double)(count - 1) + 0.5)];
+    double value = values[(size_t)(fraction * (double)(count - 1) + 0.5)];
     free(values);
     return value;
 }

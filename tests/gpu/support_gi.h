@@ -57,7 +57,7 @@ void gi_picture_finish(struct test_picture *picture);
 void gi_mean(const float *pixels, uint32_t width, uint32_t height, double out_rgb[3]);
 
 // What a share of the red values is at most: 0 the smallest, 0.5 the median, 1 the largest.
-double gi_quantile(const struct test_picture *picture, double share);
+double gi_quantile(const struct test_picture *picture, double fraction);
 
 // As test_params(), for a method: linear output, direct light as the path tracer has it.
 struct frame_params gi_params(uint32_t width, uint32_t height, enum gi_method method);

@@ -53,7 +53,7 @@ static void add_object(struct scene *scene, struct mesh_builder *builder, uint32
     gi_turn(turn_rad, scene->nodes[node].rotation);
 }
 
-static void add_lamp(struct scene *scene, const float position[3], float intensity_cd)
+static void add_light(struct scene *scene, const float position[3], float intensity_cd)
 {
     struct scene_light light;
     scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
@@ -106,7 +106,7 @@ struct scene *gi_box_scene(const struct gi_box_params *params)
     add_inside(&builder, GRAY(-e), GRAY(e), BOX_ALL, params->divisions);
     add_object(scene, &builder, wall, params->turn_rad);
     if (params->intensity_cd > 0.0f)
-        add_lamp(scene, GRAY(0.0f), params->intensity_cd);
+        add_light(scene, GRAY(0.0f), params->intensity_cd);
     float eye[3], target[3];
     turn_vector(params->turn_rad, (const float[3]){-0.7f * e, -0.3f * e, 0.62f * e}, eye);
     turn_vector(params->turn_rad, (const float[3]){0.6f * e, 0.2f * e, -0.5f * e}, target);
@@ -126,7 +126,7 @@ void gi_box_look_at_wall(float turn_rad, uint32_t wall, struct view_camera *out_
 
 struct scene *gi_corridor_scene(void)
 {
-    // One arm along X (the lamp's), one along Z (the camera's); 1.3 m wide, 2.1 m high.
+    // One arm along X (the light's), one along Z (the camera's); 1.3 m wide, 2.1 m high.
     struct scene *scene = create("corridor");
     uint32_t plaster = add_matte(scene, (const float[3]){0.62f, 0.58f, 0.51f}, 0.0f);
     uint32_t brick = add_matte(scene, (const float[3]){0.55f, 0.21f, 0.14f}, 0.0f);
@@ -148,7 +148,7 @@ struct scene *gi_corridor_scene(void)
     add_inside(&builder, right_low, right, BOX_BOTTOM, 1);
     add_inside(&builder, front_low, front, BOX_BOTTOM, 1);
     add_object(scene, &builder, carpet, 0.0f);
-    add_lamp(scene, (const float[3]){3.1f, 1.6f, 0.1f}, 45.0f);
+    add_light(scene, (const float[3]){3.1f, 1.6f, 0.1f}, 45.0f);
     add_camera(scene, (const float[3]){0.2f, 1.5f, 4.7f}, (const float[3]){-0.1f, 0.9f, 0.0f},
                0.9f);
     return scene;
@@ -213,9 +213,9 @@ struct scene *gi_metal_floor_scene(void)
     scene->materials[metal].roughness = 0.4f;
     add_inside(&builder, low, high, BOX_BOTTOM, 1);
     add_object(scene, &builder, metal, 0.0f);
-    const float lamp[4][3] = {
+    const float key_light[4][3] = {
         {-0.2f, 2.1f, -0.5f}, {0.4f, 2.1f, -0.5f}, {0.4f, 2.1f, 0.1f}, {-0.2f, 2.1f, 0.1f}};
-    mesh_builder_add_quad(&builder, lamp);
+    mesh_builder_add_quad(&builder, key_light);
     add_object(scene, &builder, add_matte(scene, GRAY(0.5f), 8.0f), 0.0f);
     add_camera(scene, (const float[3]){0.3f, 1.4f, 1.4f}, (const float[3]){-0.1f, 0.5f, -0.5f},
                1.0f);
@@ -240,7 +240,7 @@ struct scene *gi_table_scene(void)
     mesh_builder_add_box(&builder, (const float[3]){-0.7f, 0.14f, -0.9f},
                          (const float[3]){0.5f, 0.18f, 0.1f}, BOX_ALL);
     add_object(scene, &builder, add_matte(scene, (const float[3]){0.2f, 0.35f, 0.7f}, 0.0f), 0.0f);
-    add_lamp(scene, (const float[3]){0.6f, 1.9f, 0.4f}, 10.0f);
+    add_light(scene, (const float[3]){0.6f, 1.9f, 0.4f}, 10.0f);
     add_camera(scene, (const float[3]){0.5f, 0.7f, 1.4f}, (const float[3]){-0.1f, 0.3f, -0.5f},
                1.0f);
     return scene;
@@ -258,7 +258,7 @@ struct scene *gi_penumbra_scene(bool sheet, float radius_m)
         mesh_builder_add_box(&builder, (const float[3]){-2.0f, 1.0f, -2.0f},
                              (const float[3]){0.0f, 1.002f, 2.0f}, BOX_ALL);
     add_object(scene, &builder, plaster, 0.0f);
-    add_lamp(scene, (const float[3]){0.0f, 2.0f, 0.0f}, 10.0f);
+    add_light(scene, (const float[3]){0.0f, 2.0f, 0.0f}, 10.0f);
     scene->lights[0].radius_m = radius_m;
     uint32_t camera =
         scene_add_camera(scene, "camera", (const float[3]){0.0f, 0.8f, 0.0f},
@@ -288,9 +288,9 @@ struct scene *gi_rooms_scene(const struct gi_rooms_params *params)
     add_inside(&builder, GRAY(-e), (const float[3]){low[0], e, e}, BOX_ALL, 1);
     add_inside(&builder, (const float[3]){high[0], -e, -e}, GRAY(e), BOX_ALL, 1);
     add_object(scene, &builder, plaster, params->turn_rad);
-    float lamp[3];
-    turn_vector(params->turn_rad, (const float[3]){-1.0f, 0.3f, 0.2f}, lamp);
-    add_lamp(scene, lamp, 10.0f);
+    float key_light[3];
+    turn_vector(params->turn_rad, (const float[3]){-1.0f, 0.3f, 0.2f}, key_light);
+    add_light(scene, key_light, 10.0f);
     scene_update_world_transforms(scene);
     return scene;
 }

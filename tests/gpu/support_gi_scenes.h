@@ -25,7 +25,7 @@ struct scene *gi_box_scene(const struct gi_box_params *params);
 // fills a square picture evenly.
 void gi_box_look_at_wall(float turn_rad, uint32_t wall, struct view_camera *out_camera);
 
-// A passage that bends: a lamp stands in one arm, the camera in the other, which it cannot light
+// A passage that bends: a light stands in one arm, the camera in the other, which it cannot light
 // directly but for the bend.
 struct scene *gi_corridor_scene(void);
 
@@ -35,18 +35,18 @@ struct scene *gi_courtyard_scene(void);
 // A closed room lit by a ball that glows, of too many triangles for a planar emitter.
 struct scene *gi_glowing_ball_scene(void);
 
-// A closed room lit by a planar lamp over a floor of brushed metal, which shows lamp and walls.
+// A closed room lit by a planar light over a floor of brushed metal, which shows light and walls.
 struct scene *gi_metal_floor_scene(void);
 
-// A low table in a closed room with a lamp, before a wall that mirrors: light under the table, and
+// A low table in a closed room with a light, before a wall that mirrors: light under the table, and
 // what the mirror shows, lie between voxels.
 struct scene *gi_table_scene(void);
 
-// A floor under a lamp of a radius at a height of 2 m; `sheet`: half of it covered at half the
+// A floor under a light of a radius at a height of 2 m; `sheet`: half of it covered at half the
 // height, where x < 0. Seen from above, below the sheet.
 struct scene *gi_penumbra_scene(bool sheet, float radius_m);
 
-// Two closed rooms with a wall between them; a lamp in the first.
+// Two closed rooms with a wall between them; a light in the first.
 struct gi_rooms_params {
     float wall_m;   // thickness of the wall
     float offset_m; // of the wall from the middle

@@ -24,7 +24,7 @@ struct path_params {
 struct path_picture {
     uint32_t width;
     uint32_t height;
-    float *direct;   // emission, background, and light of lamps and emitters reflected once
+    float *direct;   // emission, background, and light of lights and emitters reflected once
     float *sky;      // light of the environment reflected once
     float *indirect; // light reflected twice or more
 };

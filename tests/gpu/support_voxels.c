@@ -23,8 +23,8 @@ void voxel_rig_init(struct voxel_rig *rig, struct scene *scene)
     if (!rig->gpu)
         fail_msg("%s", error.message);
     scene_update_world_transforms(scene);
-    rig->resident = resident_create(rig->gpu, scene, &error);
-    if (!rig->resident)
+    rig->gpu_scene = gpu_scene_create(rig->gpu, scene, &error);
+    if (!rig->gpu_scene)
         fail_msg("%s", error.message);
     rig->view = view_create(rig->gpu);
     assert_non_null(rig->view);
@@ -35,7 +35,7 @@ void voxel_rig_finish(struct voxel_rig *rig)
 {
     uint64_t errors = gpu_error_count(rig->gpu);
     view_destroy(&rig->view);
-    resident_destroy(&rig->resident);
+    gpu_scene_destroy(&rig->gpu_scene);
     gpu_destroy(&rig->gpu);
     assert_int_equal(errors, 0);
 }
@@ -60,14 +60,14 @@ static struct frame begin(struct voxel_rig *rig, struct voxel_volume *volume)
     rig->params.settings.gi_method = volume->params.method;
     struct frame frame = {
         .gpu = rig->gpu,
-        .resident = rig->resident,
+        .gpu_scene = rig->gpu_scene,
         .view = rig->view,
         .params = &rig->params,
         .camera = rig->params.camera,
         .quality = &quality_levels[QUALITY_FINAL],
         .volume = volume,
     };
-    effects_plan(&frame.plan, rig->resident, &rig->params);
+    effects_plan(&frame.plan, rig->gpu_scene, &rig->params);
     return frame;
 }
 
@@ -76,7 +76,7 @@ static void bind(struct voxel_rig *rig, struct voxel_volume *volume)
     struct frame_block block = {0};
     block.texture_max_anisotropy = 1.0f;
     gpu_buffer_write(rig->view->frame_block, 0, sizeof(block), &block);
-    resident_bind(rig->resident);
+    gpu_scene_bind(rig->gpu_scene);
     view_bind(rig->view);
     voxel_volume_bind(volume);
 }
@@ -92,10 +92,10 @@ static void run(struct frame *frame, const struct pass *pass)
 void voxel_rig_voxelize(struct voxel_rig *rig, struct voxel_volume *volume, const float eye[3])
 {
     struct error error = {""};
-    if (!resident_update(rig->resident, &error))
+    if (!gpu_scene_update(rig->gpu_scene, &error))
         fail_msg("%s", error.message);
     memcpy(rig->params.camera.eye, eye, sizeof(rig->params.camera.eye));
-    assert_true(voxel_volume_update(volume, rig->resident, eye));
+    assert_true(voxel_volume_update(volume, rig->gpu_scene, eye));
     struct frame frame = begin(rig, volume);
     bind(rig, volume);
     if (volume->region_count > 0)
@@ -107,7 +107,7 @@ void voxel_rig_light(struct voxel_rig *rig, struct voxel_volume *volume)
     struct frame frame = begin(rig, volume);
     frame.light_work.relight = true;
     frame.light_work.direct = true;
-    frame.light_work.relight_end = volume->lit_levels;
+    frame.light_work.relight_end = volume->cell_level_count;
     bind(rig, volume);
     run(&frame, &voxel_relight_pass);
     run(&frame, &voxel_filter_pass);
@@ -164,7 +164,7 @@ struct voxel_records voxel_read_records(const struct voxel_volume *volume)
     size_t capacity = 0;
     uint32_t *index = read_words(volume->index), *cells = read_words(volume->cells);
     uint32_t *surfels = read_words(volume->surfels);
-    for (uint32_t level = 0; level < volume->lit_levels; level++) {
+    for (uint32_t level = 0; level < volume->cell_level_count; level++) {
         uint32_t edge = volume->levels[level].edge, slots = edge * edge * edge;
         for (uint32_t slot = 0; slot < slots; slot++) {
             uint32_t entry = index[level * slots + slot];

@@ -11,7 +11,7 @@
 struct voxel_rig {
     struct gpu *gpu;
     struct view *view;
-    struct resident *resident;
+    struct gpu_scene *gpu_scene;
     struct frame_params params;
 };
 

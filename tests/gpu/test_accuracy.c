@@ -61,35 +61,35 @@ static const cJSON *at(const cJSON *json, const char *name)
 static void test_named_ladders(void **state)
 {
     (void)state;
-    struct ladder *ladder = malloc(sizeof(*ladder));
+    struct sweep *sweep = malloc(sizeof(*sweep));
     struct error error = {""};
-    assert_non_null(ladder);
-    assert_true(ladder_load("quick", ladder, &error));
-    assert_int_equal(ladder->rung_count, 1 + QUALITY_COUNT);
-    if (!ladder_load("full", ladder, &error))
+    assert_non_null(sweep);
+    assert_true(sweep_load("quick", sweep, &error));
+    assert_int_equal(sweep->configuration_count, 1 + QUALITY_COUNT);
+    if (!sweep_load("full", sweep, &error))
         fail_msg("%s", error.message);
-    assert_int_equal(ladder->rung_count, 52);
-    for (uint32_t i = 0; i < ladder->rung_count; i++)
+    assert_int_equal(sweep->configuration_count, 52);
+    for (uint32_t i = 0; i < sweep->configuration_count; i++)
         for (uint32_t k = 0; k < i; k++)
-            assert_string_not_equal(ladder->rungs[i].name, ladder->rungs[k].name);
-    free(ladder);
+            assert_string_not_equal(sweep->configurations[i].name, sweep->configurations[k].name);
+    free(sweep);
 }
 
 static void test_ladders_in_files(void **state)
 {
     (void)state;
-    struct ladder *ladder = malloc(sizeof(*ladder));
+    struct sweep *sweep = malloc(sizeof(*sweep));
     struct error error = {""};
     char path[256];
-    assert_non_null(ladder);
+    assert_non_null(sweep);
     write_file("ladder.json", "[{\"name\": \"a\", \"preset\": \"draft\", \"scale\": 0.5, \"set\": "
                               "{\"cone_set\": 16, \"settings.soft_shadows\": false}}]");
     name_file(path, "ladder.json");
-    if (!ladder_load(path, ladder, &error))
+    if (!sweep_load(path, sweep, &error))
         fail_msg("%s", error.message);
     struct frame_params params = {0};
     render_settings_init(&params.settings);
-    assert_true(rung_apply(&ladder->rungs[0], &params, &error));
+    assert_true(configuration_apply(&sweep->configurations[0], &params, &error));
     assert_int_equal(params.quality, QUALITY_DRAFT);
     assert_int_equal(params.settings.cone_set, CONE_SET_16);
     assert_false(params.settings.soft_shadows);
@@ -107,12 +107,12 @@ static void test_ladders_in_files(void **state)
     };
     for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
         write_file("ladder.json", wrong[i][0]);
-        if (ladder_load(path, ladder, &error) || !strstr(error.message, wrong[i][1]))
+        if (sweep_load(path, sweep, &error) || !strstr(error.message, wrong[i][1]))
             fail_msg("%s: \"%s\"", wrong[i][0], error.message);
     }
-    assert_false(ladder_load("/no/such/file", ladder, &error));
+    assert_false(sweep_load("/no/such/file", sweep, &error));
     assert_non_null(strstr(error.message, "quick, full or a file"));
-    free(ladder);
+    free(sweep);
 }
 
 static cJSON *made_up_entry(const char *name, double ms, double flip, double ssim)
@@ -172,11 +172,11 @@ static void test_pareto_front(void **state)
 
 static int run_accuracy(const char *size)
 {
-    char ladder[256];
-    name_file(ladder, "ladder.json");
+    char sweep[256];
+    name_file(sweep, "ladder.json");
     const char *const words[] = {"accuracy",        "builtin:cornell",
                                  "--out",           folder,
-                                 "--ladder",        ladder,
+                                 "--ladder",        sweep,
                                  "--reference-spp", "16",
                                  "--size",          size,
                                  "--frames",        "1",
@@ -238,9 +238,10 @@ static void test_a_run(void **state)
     cJSON *table = accuracy_quality_table();
     assert_true(cJSON_Compare(at(at(results, "setup"), "quality"), table, true));
     cJSON_Delete(table);
-    const cJSON *rungs = at(results, "rungs");
-    assert_int_equal(cJSON_GetArraySize(rungs), 2);
-    const cJSON *none = cJSON_GetArrayItem(rungs, 0), *half = cJSON_GetArrayItem(rungs, 1);
+    const cJSON *configurations = at(results, "rungs");
+    assert_int_equal(cJSON_GetArraySize(configurations), 2);
+    const cJSON *none = cJSON_GetArrayItem(configurations, 0),
+                *half = cJSON_GetArrayItem(configurations, 1);
     assert_true(at(at(none, "frame_ms"), "median")->valuedouble == first_ms);
     // Without indirect light, there is none; by voxels there is about as much as there should be.
     const cJSON *dark = at(at(none, "converged"), "indirect");
@@ -275,9 +276,9 @@ static void test_wrong_truths(void **state)
     assert_true(picture_write_pfm(path, &picture, &error));
     picture_finish(&picture);
     struct cli_shot shot = {.params = {.width = 16, .height = 9}};
-    struct truth_params params = {.shot = &shot, .path = path};
-    struct truth truth;
-    assert_false(truth_get(&params, &truth, &error));
+    struct reference_image_params params = {.shot = &shot, .path = path};
+    struct reference_image reference_image;
+    assert_false(reference_image_get(&params, &reference_image, &error));
     assert_non_null(strstr(error.message, "8x8"));
     assert_non_null(strstr(error.message, "16x9"));
 }

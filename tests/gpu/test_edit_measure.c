@@ -11,7 +11,7 @@
 #include "server/cli_edit.h"
 #include "support_gpu.h"
 
-#define EMITTER 5 // the lamp's material in builtin:cornell
+#define EMITTER 5 // the light's material in builtin:cornell
 
 static struct frame_params frame_of(const struct scene *scene, enum gi_method method)
 {

@@ -171,7 +171,7 @@ enum change { ADD_GLASS, ADD_EMITTER, ADD_LIGHT, ADD_SOFT_LIGHT, ADD_ENVIRONMENT
 static const struct change_case {
     const char *what;
     enum change change;
-    bool lit;           // there is a lamp already
+    bool lit;           // there is a light already
     uint32_t must, may; // effects that come
 } changes[] = {
     // Glass reflects, too; a scene with light has indirect light anyway.
@@ -417,9 +417,9 @@ static void test_converged_pictures_rest(void **state)
         const char *method = gi_method_names[gi_proved_methods[m]];
         gi_check(&report, drawn == 0, "%s: converged after %u frames, then %u of 5 drawn", method,
                  frames, drawn);
-        struct scene_material lamp = stage.scene->materials[5];
-        lamp.emissive_strength *= 2.0f;
-        scene_set_material(stage.scene, 5, &lamp);
+        struct scene_material key_light = stage.scene->materials[5];
+        key_light.emissive_strength *= 2.0f;
+        scene_set_material(stage.scene, 5, &key_light);
         frames = gi_converge(stage.renderer, stage.view, &stage.params, &picture);
         gi_picture_finish(&picture);
         gi_check(&report, frames > 0, "%s: converged anew after %u frames", method, frames);

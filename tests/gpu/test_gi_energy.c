@@ -1,7 +1,7 @@
 // Proves that indirect light is as much as it should be: means over pictures, by colour, against
 // the reference path tracer, in the Cornell box and in scenes that nobody tunes to.
 //
-// Where only lamps and planar emitters light, indirect light is compared alone: the picture with
+// Where only lights and planar emitters light, indirect light is compared alone: the picture with
 // global illumination minus the one without. Skies and glowing bodies are compared as a whole,
 // since without global illumination their light is not blocked, or not there.
 //

@@ -1,6 +1,6 @@
 // Proves that voxel global illumination neither adds nor loses light: in a closed box whose walls
 // reflect a share a of light and emit L each, everything shows L / (1 - a), after n reflections
-// L (1 + a + ... + a^n); and the flux of a lamp in the box equals what its walls absorb.
+// L (1 + a + ... + a^n); and the flux of a light in the box equals what its walls absorb.
 //
 // Runs a selection of resolutions, steps and gather modes; VOXCAST_TEST_FULL=1 runs all of them.
 // The stability suite checks the series of bounces in the cache, too; here it runs in full alone.
@@ -25,7 +25,7 @@
 #define MEAN_TOLERANCE 0.03
 // Of all but one of a hundred pixels.
 #define PIXEL_TOLERANCE 0.10
-#define LAMP_TOLERANCE  0.05
+#define LIGHT_TOLERANCE 0.05
 
 struct furnace_case {
     float albedo;
@@ -145,7 +145,7 @@ static void test_bounces_are_a_geometric_series(void **state)
 }
 
 // Irradiance x area x (1 - albedo) is the flux; the mean over walls seen squarely.
-static void test_lamp_in_a_box_balances(void **state)
+static void test_light_in_a_box_balances(void **state)
 {
     (void)state;
     struct gi_report report = {0};
@@ -176,7 +176,7 @@ static void test_lamp_in_a_box_balances(void **state)
         gi_hide(&view);
         double area = 24.0 * HALF_EDGE_M * HALF_EDGE_M;
         double expected = albedo / M_PI * 4.0 * M_PI * intensity_cd / area / (1.0 - albedo);
-        gi_check_ratio(&report, sum / walls, expected, LAMP_TOLERANCE,
+        gi_check_ratio(&report, sum / walls, expected, LIGHT_TOLERANCE,
                        "%s lamp in a box, albedo %g, turn %g", gi_method_names[method], albedo,
                        (double)box.turn_rad);
         scene_destroy(&scene);
@@ -189,7 +189,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_furnace_is_even),
         cmocka_unit_test(test_bounces_are_a_geometric_series),
-        cmocka_unit_test(test_lamp_in_a_box_balances),
+        cmocka_unit_test(test_light_in_a_box_balances),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);
 }

@@ -1,4 +1,4 @@
-// Proves that light stays in its room. Two closed rooms share a wall one voxel thick, a lamp
+// Proves that light stays in its room. Two closed rooms share a wall one voxel thick, a light
 // lights one of them: the other receives less than 1 % of the lit room's mean indirect light. A
 // wall two voxels thick lets nothing through, a turned one 0.04 % at most. Wherever the wall lies
 // between two voxels, and however the rooms are turned.
@@ -15,10 +15,10 @@
 #include "support_gi.h"
 #include "support_gi_scenes.h"
 
-#define PICTURE_EDGE    32u
-#define RESOLUTION      64.0
-#define ONE_VOXEL_SHARE 0.01
-#define NOTHING         1e-6
+#define PICTURE_EDGE       32u
+#define RESOLUTION         64.0
+#define ONE_VOXEL_FRACTION 0.01
+#define NOTHING            1e-6
 // Along the edges of turned walls a little comes through: a tenth of a step of an 8-bit picture in
 // which the lit room is white.
 #define TURNED_NOTHING 4e-4
@@ -67,7 +67,7 @@ static void check_walls_of_turn(struct gi_report *report, enum gi_method method,
     static double lit_means[GI_METHOD_COUNT][3];
     double *lit = &lit_means[method][turn], edge_m = voxel_edge_m(turns_rad[turn]);
     double nothing = turn == 0 ? NOTHING : TURNED_NOTHING;
-    double allowed = wall_voxels == 1 ? ONE_VOXEL_SHARE : nothing;
+    double allowed = wall_voxels == 1 ? ONE_VOXEL_FRACTION : nothing;
     for (size_t offset = 0; offset < 3; offset++) {
         // Of turned rooms and of thick walls the diagonal with the worst of the table is enough.
         if (!gi_test_is_full() && (turn > 0 || wall_voxels > 1) && offset != (3 - turn) % 3)
@@ -77,12 +77,12 @@ static void check_walls_of_turn(struct gi_report *report, enum gi_method method,
                                         .turn_rad = turns_rad[turn]};
         if (*lit == 0.0)
             *lit = room_mean(&rooms, 0, method);
-        double dark = room_mean(&rooms, 1, method), share = fabs(dark) / *lit;
-        gi_check(report, *lit > 0.0 && share < allowed,
+        double dark = room_mean(&rooms, 1, method), fraction = fabs(dark) / *lit;
+        gi_check(report, *lit > 0.0 && fraction < allowed,
                  "%s, wall of %d voxels, offset %g voxels, turn %g: lit %.5g dark %.3g share %.2e "
                  "(below %g)",
                  gi_method_names[method], wall_voxels, (double)offsets_voxels[offset],
-                 (double)turns_rad[turn], *lit, dark, share, allowed);
+                 (double)turns_rad[turn], *lit, dark, fraction, allowed);
     }
 }
 

@@ -1,6 +1,6 @@
 // Proves that pictures gathered by rays show what lies between voxels: light under a low table, and
 // a room in a mirror, against the reference path tracer, where those gathered from voxels do not;
-// and the shadows of lamps that have a size.
+// and the shadows of lights that have a size.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,9 +19,9 @@
 #define BLOCK_EDGE   4u
 
 // Root mean square of the differences over the mean of indirect light, by blocks.
-#define RAYS_MOST 0.10
+#define MAX_RAYS 0.10
 // Those by voxels err so many times as much, at least.
-#define VOXELS_LEAST 1.4
+#define MIN_VOXELS 1.4
 
 static void draw_indirect(struct scene *scene, enum gather_mode gather,
                           const struct test_picture *none, struct test_picture *out_picture)
@@ -81,9 +81,9 @@ static void test_rays_find_what_voxels_do_not(void **state)
     double by_cache = relative_error(cache.pixels, traced.indirect);
     double by_rays = relative_error(rays.pixels, traced.indirect);
     struct gi_report report = {0};
-    gi_check(&report, by_rays <= RAYS_MOST, "rays err by %.3f of the mean (at most %.2f)", by_rays,
-             RAYS_MOST);
-    gi_check(&report, by_cache >= VOXELS_LEAST * by_rays, "voxels err by %.3f, %g times as much",
+    gi_check(&report, by_rays <= MAX_RAYS, "rays err by %.3f of the mean (at most %.2f)", by_rays,
+             MAX_RAYS);
+    gi_check(&report, by_cache >= MIN_VOXELS * by_rays, "voxels err by %.3f, %g times as much",
              by_cache, by_cache / by_rays);
     gi_picture_finish(&none);
     gi_picture_finish(&cache);
@@ -102,17 +102,17 @@ static void test_pictures_in_motion_show_the_cache(void **state)
     assert_true(renderer_set_scene(test_renderer(), scene, &error));
     struct frame_params params[2];
     struct view *views[2];
-    struct test_picture still[2] = {0};
+    struct test_picture settled[2] = {0};
     for (int i = 0; i < 2; i++) {
         params[i] = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_GRID);
         params[i].settings.gather_mode = i == 0 ? GATHER_CACHE : GATHER_RAYS;
         gi_scene_camera(scene, &params[i].camera);
         views[i] = renderer_view_create(test_renderer());
         assert_non_null(views[i]);
-        assert_true(gi_converge(test_renderer(), views[i], &params[i], &still[i]) > 0);
+        assert_true(gi_converge(test_renderer(), views[i], &params[i], &settled[i]) > 0);
     }
     size_t bytes = (size_t)PICTURE_EDGE * PICTURE_EDGE * 4 * sizeof(float);
-    assert_int_not_equal(memcmp(still[0].pixels, still[1].pixels, bytes), 0);
+    assert_int_not_equal(memcmp(settled[0].pixels, settled[1].pixels, bytes), 0);
     for (int step = 0; step < 3; step++) {
         struct test_picture moving[2] = {0};
         for (int i = 0; i < 2; i++) {
@@ -125,24 +125,24 @@ static void test_pictures_in_motion_show_the_cache(void **state)
         gi_picture_finish(&moving[1]);
     }
     for (int i = 0; i < 2; i++) {
-        gi_picture_finish(&still[i]);
+        gi_picture_finish(&settled[i]);
         renderer_view_destroy(test_renderer(), &views[i]);
     }
     assert_true(renderer_set_scene(test_renderer(), NULL, &error));
     scene_destroy(&scene);
 }
 
-#define LAMP_RADIUS_M 0.2
+#define LIGHT_RADIUS_M 0.2
 
 // Share of a disk that a straight edge leaves, which lies so many radii from its middle.
-static double disk_share(double edge)
+static double disk_fraction(double edge)
 {
     double t = fmax(fmin(edge, 1.0), -1.0);
     return 0.5 + (t * sqrt(1.0 - t * t) + asin(t)) / 3.14159265358979;
 }
 
-// The edge of the sheet hides from a place x of the floor what of the lamp lies at less than -x.
-static void test_ball_lamps_have_their_penumbra(void **state)
+// The edge of the sheet hides from a place x of the floor what of the light lies at less than -x.
+static void test_sphere_lights_have_their_penumbra(void **state)
 {
     (void)state;
     struct gi_report report = {0};
@@ -150,7 +150,7 @@ static void test_ball_lamps_have_their_penumbra(void **state)
     for (int q = 0; q < 3; q++) {
         struct test_picture pictures[2];
         for (int sheet = 0; sheet < 2; sheet++) {
-            struct scene *scene = gi_penumbra_scene(sheet, sheet ? (float)LAMP_RADIUS_M : 0.0f);
+            struct scene *scene = gi_penumbra_scene(sheet, sheet ? (float)LIGHT_RADIUS_M : 0.0f);
             struct frame_params params = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_CLIPMAP);
             params.quality = qualities[q];
             params.settings.soft_shadows = true;
@@ -166,8 +166,8 @@ static void test_ball_lamps_have_their_penumbra(void **state)
             for (uint32_t y = PICTURE_EDGE * 3 / 8; y < PICTURE_EDGE * 5 / 8; y++)
                 for (int i = 0; i < 2; i++)
                     sums[i] += (double)pictures[i].pixels[(y * PICTURE_EDGE + x) * 4];
-            double place_m = ((x + 0.5) / PICTURE_EDGE * 2.0 - 1.0) * half_extent_m;
-            double expected = disk_share(place_m / LAMP_RADIUS_M);
+            double position_m = ((x + 0.5) / PICTURE_EDGE * 2.0 - 1.0) * half_extent_m;
+            double expected = disk_fraction(position_m / LIGHT_RADIUS_M);
             worst = fmax(worst, fabs(sums[1] / sums[0] - expected));
         }
         gi_check(&report, worst <= 0.05, "%s: a penumbra is off by %.3f of the light",
@@ -178,15 +178,15 @@ static void test_ball_lamps_have_their_penumbra(void **state)
     gi_report_finish(&report);
 }
 
-// Off what shows the lamp itself.
-static double shadow_error(const float *a, const float *truth)
+// Off what shows the light itself.
+static double shadow_error(const float *a, const float *reference)
 {
     const uint32_t blocks = PICTURE_EDGE / BLOCK_EDGE;
     const double brightest = 2.0 * BLOCK_EDGE * BLOCK_EDGE; // walls have less, cd/m^2
     double squared = 0.0, sum = 0.0;
     uint32_t count = 0;
     for (uint32_t i = 0; i < blocks * blocks; i++) {
-        double expected = block_sum(truth, i, 1);
+        double expected = block_sum(reference, i, 1);
         if (expected > brightest)
             continue;
         squared += pow(block_sum(a, i, 1) - expected, 2.0);
@@ -196,7 +196,7 @@ static double shadow_error(const float *a, const float *truth)
     return sqrt(squared * count) / sum;
 }
 
-static void test_planar_lamps_have_their_penumbra(void **state)
+static void test_planar_lights_have_their_penumbra(void **state)
 {
     (void)state;
     struct error error = {""};
@@ -238,7 +238,7 @@ static void test_rays_start_anew_where_more_is_asked(void **state)
 {
     (void)state;
     struct gi_report report = {0};
-    struct scene *scene = gi_penumbra_scene(true, (float)LAMP_RADIUS_M);
+    struct scene *scene = gi_penumbra_scene(true, (float)LIGHT_RADIUS_M);
     struct frame_params wanted = gi_params(PICTURE_EDGE, PICTURE_EDGE, GI_METHOD_CLIPMAP);
     wanted.settings.soft_shadows = true;
     wanted.settings.gather_mode = GATHER_RAYS;
@@ -270,8 +270,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rays_find_what_voxels_do_not),
         cmocka_unit_test(test_pictures_in_motion_show_the_cache),
-        cmocka_unit_test(test_ball_lamps_have_their_penumbra),
-        cmocka_unit_test(test_planar_lamps_have_their_penumbra),
+        cmocka_unit_test(test_sphere_lights_have_their_penumbra),
+        cmocka_unit_test(test_planar_lights_have_their_penumbra),
         cmocka_unit_test(test_rays_start_anew_where_more_is_asked),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);

@@ -50,7 +50,7 @@ static void draw_step(struct renderer *renderer, struct view *view,
     renderer_view_release(renderer, view);
 }
 
-static void place_camera(struct view_camera *camera, const struct view_camera *start, uint32_t step)
+static void set_camera(struct view_camera *camera, const struct view_camera *start, uint32_t step)
 {
     float angle = 0.8f * (float)step / STEPS;
     camera->eye[0] = start->eye[0] + 0.25f * sinf(3.0f * angle);
@@ -58,7 +58,7 @@ static void place_camera(struct view_camera *camera, const struct view_camera *s
     camera->eye[2] = start->eye[2] - 0.9f * angle;
 }
 
-static void place_block(struct scene *scene, uint32_t node, uint32_t step)
+static void add_block(struct scene *scene, uint32_t node, uint32_t step)
 {
     float angle = 0.9f * (float)step / STEPS;
     scene_set_node_transform(scene, node, (float[3]){-0.1f * angle, 0.12f * angle, 0.15f * angle},
@@ -116,9 +116,9 @@ static void check_walk(struct gi_report *report, enum gi_method method, bool mov
     params.camera = start;
     for (uint32_t step = 1; step <= STEPS; step++) {
         if (moves_camera)
-            place_camera(&params.camera, &start, step);
+            set_camera(&params.camera, &start, step);
         else
-            place_block(scene, block, step);
+            add_block(scene, block, step);
         draw_step(renderer, view, &params, &bad_values);
     }
     const char *what = moves_camera ? "camera" : "object";

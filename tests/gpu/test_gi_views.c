@@ -36,7 +36,7 @@ static struct frame_params view_params(const struct scene *scene, enum gi_method
 }
 
 // The share of pixels that are not black, and whether all are finite and none negative.
-static double lit_share(const struct test_picture *picture, bool *out_finite)
+static double lit_fraction(const struct test_picture *picture, bool *out_finite)
 {
     uint32_t count = picture->width * picture->height, lit = 0;
     *out_finite = true;
@@ -65,7 +65,7 @@ static void check_view(struct gi_report *report, struct view *drawn,
     enum debug_view view = params->debug_view;
     struct test_picture picture = gi_draw_in(drawn, params);
     bool finite;
-    double lit = lit_share(&picture, &finite);
+    double lit = lit_fraction(&picture, &finite);
     const char *method_name = gi_method_names[method];
     const char *name = debug_view_names[view];
     gi_check(report, finite, "%s, %s: every pixel is finite", method_name, name);
@@ -112,7 +112,7 @@ static void test_every_level_is_finite(void **state)
                 params.settings.voxel_directions = level == 3 ? VOXEL_ISOTROPIC : VOXEL_ANISOTROPIC;
                 struct test_picture picture = gi_draw_in(drawn, &params);
                 bool finite;
-                double lit = lit_share(&picture, &finite);
+                double lit = lit_fraction(&picture, &finite);
                 gi_check(&report, finite && lit > 0.1, "%s, %s, level %u: %.3f is lit",
                          gi_method_names[gi_proved_methods[m]], debug_view_names[view], level, lit);
                 gi_picture_finish(&picture);

@@ -111,7 +111,7 @@ static double form_factor(const double point[3], const double normal[3], const d
     return fabs(sum);
 }
 
-// A square above another: in the first it emits, in the second it reflects a lamp's light.
+// A square above another: in the first it emits, in the second it reflects a light's light.
 static void test_one_reflection_follows_the_form_factor(void **state)
 {
     (void)state;
@@ -121,7 +121,7 @@ static void test_one_reflection_follows_the_form_factor(void **state)
     float corners[4][3];
     for (int i = 0; i < 12; i++)
         corners[i / 3][i % 3] = (float)above[i / 3][i % 3];
-    double share = form_factor((const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, above, 4);
+    double fraction = form_factor((const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, above, 4);
     for (int emits = 0; emits < 2; emits++) {
         // The square below is nearly a point: nothing is reflected back and forth.
         struct scene *scene = test_square_scene(0.01f, 0.5f);
@@ -144,7 +144,7 @@ static void test_one_reflection_follows_the_form_factor(void **state)
         params.camera.fov_y_rad = 0.001f;
         double radiance = emits ? 10.0 : 0.8 / M_PI * 100.0;
         gi_check_ratio(&report, trace_mean(&params, emits ? DIRECT : INDIRECT),
-                       0.5 * radiance * share, 0.005, emits ? "emitter" : "lit sheet");
+                       0.5 * radiance * fraction, 0.005, emits ? "emitter" : "lit sheet");
         scene_destroy(&scene);
     }
     gi_report_finish(&report);
@@ -179,8 +179,8 @@ static void test_furnace_is_a_geometric_series(void **state)
     gi_report_finish(&report);
 }
 
-// The flux of a lamp in a closed box is absorbed by its walls: irradiance x area x (1 - albedo).
-static void test_lamp_in_a_box_balances(void **state)
+// The flux of a light in a closed box is absorbed by its walls: irradiance x area x (1 - albedo).
+static void test_light_in_a_box_balances(void **state)
 {
     (void)state;
     struct gi_report report = {0};
@@ -257,7 +257,7 @@ static void test_metal_under_a_sky_shows_its_albedo(void **state)
 
 // Walls that glow light gloss as a sky that glows as much: found by sampling emitters as well as by
 // following reflections, or by these alone.
-static void test_gloss_in_a_glowing_box(void **state)
+static void test_specular_in_a_glowing_box(void **state)
 {
     (void)state;
     struct gi_report report = {0};
@@ -271,12 +271,12 @@ static void test_gloss_in_a_glowing_box(void **state)
                                             .emission = 1.0f, .half_edge_m = 2.0f, .divisions = 1});
             scene->environment = (struct scene_environment){
                 .type = SCENE_ENVIRONMENT_CONSTANT, .intensity = 1.0f, .color = {1.0f, 1.0f, 1.0f}};
-            struct scene_material gloss;
-            scene_material_init(&gloss, "gloss");
-            gloss.base_color[0] = 0.6f;
-            gloss.metallic = i < 3 ? 0.0f : 1.0f;
-            gloss.roughness = roughnesses[i % 3];
-            uint32_t material = scene_add_material(scene, &gloss);
+            struct scene_material specular;
+            scene_material_init(&specular, "gloss");
+            specular.base_color[0] = 0.6f;
+            specular.metallic = i < 3 ? 0.0f : 1.0f;
+            specular.roughness = roughnesses[i % 3];
+            uint32_t material = scene_add_material(scene, &specular);
             uint32_t mesh = scene_add_mesh(scene, "gloss");
             const float corners[4][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
             assert_true(builtin_add_quad(scene, corners, material));
@@ -295,7 +295,7 @@ static void test_gloss_in_a_glowing_box(void **state)
 }
 
 // GGX of glTF 2.0, appendix B, for a white metal whose normal is +Z: BRDF times the cosine.
-static double metal_share(const double view[3], const double light[3], double alpha)
+static double metal_fraction(const double view[3], const double light[3], double alpha)
 {
     double half[3], length = 0.0, a2 = alpha * alpha;
     for (int i = 0; i < 3; i++) {
@@ -309,67 +309,69 @@ static double metal_share(const double view[3], const double light[3], double al
     return distribution * visibility * n_l;
 }
 
-#define LAMP_HEIGHT_M    2.0
-#define LAMP_HALF_EDGE_M 0.3
-#define LAMP_RADIANCE    8.0
+#define LIGHT_HEIGHT_M    2.0
+#define LIGHT_HALF_EDGE_M 0.3
+#define LIGHT_RADIANCE    8.0
 
-// What the origin shows of a square lamp above a white metal floor: the sum over the lamp's area.
-static double metal_under_lamp(const float eye[3], double lamp_x, double roughness)
+// What the origin shows of a square light above a white metal floor: the sum over the light's area.
+static double metal_under_light(const float eye[3], double light_x, double roughness)
 {
     const int steps = 400;
-    double view[3], length = 0.0, sum = 0.0, step = 2.0 * LAMP_HALF_EDGE_M / steps;
+    double view[3], length = 0.0, sum = 0.0, step = 2.0 * LIGHT_HALF_EDGE_M / steps;
     for (int i = 0; i < 3; i++)
         length += (double)eye[i] * eye[i];
     for (int i = 0; i < 3; i++)
         view[i] = eye[i] / sqrt(length);
     for (int i = 0; i < steps * steps; i++) {
-        double point[3] = {lamp_x - LAMP_HALF_EDGE_M + (i % steps + 0.5) * step,
-                           -LAMP_HALF_EDGE_M + (i / steps + 0.5) * step, LAMP_HEIGHT_M};
+        double point[3] = {light_x - LIGHT_HALF_EDGE_M + (i % steps + 0.5) * step,
+                           -LIGHT_HALF_EDGE_M + (i / steps + 0.5) * step, LIGHT_HEIGHT_M};
         double squared = point[0] * point[0] + point[1] * point[1] + point[2] * point[2];
         double distance = sqrt(squared), light[3];
         for (int axis = 0; axis < 3; axis++)
             light[axis] = point[axis] / distance;
-        sum += metal_share(view, light, roughness * roughness) * light[2] / squared * step * step;
+        sum +=
+            metal_fraction(view, light, roughness * roughness) * light[2] / squared * step * step;
     }
-    return LAMP_RADIANCE * sum;
+    return LIGHT_RADIANCE * sum;
 }
 
-static struct scene *metal_under_lamp_scene(double lamp_x, double roughness)
+static struct scene *metal_under_light_scene(double light_x, double roughness)
 {
     struct scene *scene = test_square_scene(0.05f, 1.0f);
     scene->materials[0].metallic = 1.0f;
     scene->materials[0].roughness = (float)roughness;
-    uint32_t lamp = builtin_add_matte(scene, "lamp", (const float[3]){0.0f, 0.0f, 0.0f});
-    scene->materials[lamp].emissive[0] = 1.0f;
-    scene->materials[lamp].emissive_strength = (float)LAMP_RADIANCE;
+    uint32_t key_light = builtin_add_matte(scene, "lamp", (const float[3]){0.0f, 0.0f, 0.0f});
+    scene->materials[key_light].emissive[0] = 1.0f;
+    scene->materials[key_light].emissive_strength = (float)LIGHT_RADIANCE;
     uint32_t mesh = scene_add_mesh(scene, "lamp");
-    float left = (float)(lamp_x - LAMP_HALF_EDGE_M), right = (float)(lamp_x + LAMP_HALF_EDGE_M);
-    const float edge = (float)LAMP_HALF_EDGE_M, height = (float)LAMP_HEIGHT_M;
+    float left = (float)(light_x - LIGHT_HALF_EDGE_M), right = (float)(light_x + LIGHT_HALF_EDGE_M);
+    const float edge = (float)LIGHT_HALF_EDGE_M, height = (float)LIGHT_HEIGHT_M;
     const float corners[4][3] = {
         {left, -edge, height}, {left, edge, height}, {right, edge, height}, {right, -edge, height}};
-    assert_true(builtin_add_quad(scene, corners, lamp));
+    assert_true(builtin_add_quad(scene, corners, key_light));
     builtin_add_mesh_node(scene, "lamp", mesh);
     scene_update_world_transforms(scene);
     return scene;
 }
 
-// The renderer takes a lamp's gloss from one point of it: its figure is told, not judged.
-static void test_gloss_of_a_lamp_is_its_integral(void **state)
+// The renderer takes a light's gloss from one point of it: its figure is told, not judged.
+static void test_specular_of_a_light_is_its_integral(void **state)
 {
     (void)state;
     struct gi_report report = {0};
     static const double roughnesses[] = {0.2, 0.4, 0.7};
-    static const double offsets_m[] = {0.0, 0.8}; // of the lamp from where the mirror would show it
+    static const double offsets_m[] = {0.0,
+                                       0.8}; // of the light from where the mirror would show it
     for (int i = 0; i < 6; i++) {
         double roughness = roughnesses[i % 3];
         const float eye[3] = {1.2f, 0.0f, 1.5f};
-        double lamp_x = -1.2 / 1.5 * LAMP_HEIGHT_M + offsets_m[i / 3];
-        struct scene *scene = metal_under_lamp_scene(lamp_x, roughness);
+        double light_x = -1.2 / 1.5 * LIGHT_HEIGHT_M + offsets_m[i / 3];
+        struct scene *scene = metal_under_light_scene(light_x, roughness);
         struct path_params params = path_params(scene, 128);
         for (int axis = 0; axis < 3; axis++)
             params.camera.eye[axis] = eye[axis];
         params.camera.fov_y_rad = 0.001f;
-        double expected = metal_under_lamp(eye, lamp_x, roughness);
+        double expected = metal_under_light(eye, light_x, roughness);
         gi_check_ratio(&report, trace_mean(&params, DIRECT), expected, 0.01,
                        "metal of roughness %g, lamp %g m beside the mirror ray", roughness,
                        offsets_m[i / 3]);
@@ -394,7 +396,7 @@ static struct scene *load_builtin_without_sky(const char *name)
 }
 
 // Means over the picture: the renderer takes an emitter's shadow from its centre, which moves
-// light, but on the whole neither adds nor loses much. Both look along the same rays: a lamp is
+// light, but on the whole neither adds nor loses much. Both look along the same rays: a light is
 // much brighter than what it lights, and few pixels wide.
 static void check_direct_light(struct gi_report *report, struct scene *scene, double tolerance)
 {
@@ -451,11 +453,11 @@ int main(void)
         cmocka_unit_test(test_punctual_lights_follow_their_formulas),
         cmocka_unit_test(test_one_reflection_follows_the_form_factor),
         cmocka_unit_test(test_furnace_is_a_geometric_series),
-        cmocka_unit_test(test_lamp_in_a_box_balances),
+        cmocka_unit_test(test_light_in_a_box_balances),
         cmocka_unit_test(test_sky_lights_an_open_floor),
         cmocka_unit_test(test_metal_under_a_sky_shows_its_albedo),
-        cmocka_unit_test(test_gloss_in_a_glowing_box),
-        cmocka_unit_test(test_gloss_of_a_lamp_is_its_integral),
+        cmocka_unit_test(test_specular_in_a_glowing_box),
+        cmocka_unit_test(test_specular_of_a_light_is_its_integral),
         cmocka_unit_test(test_renderer_shows_the_same_direct_light),
         cmocka_unit_test(test_seed_alone_decides),
     };

@@ -132,11 +132,11 @@ static void test_emitter_lights_by_its_form_factor(void **state)
     (void)state;
     const double half = 0.5, distance = 1.0;
     struct scene *scene = test_square_scene(2.0f, 0.5f);
-    struct scene_material lamp = scene->materials[0];
-    strcpy(lamp.name, "lamp");
-    lamp.emissive[0] = lamp.emissive[1] = lamp.emissive[2] = 1.0f;
-    lamp.emissive_strength = 10.0f;
-    uint32_t material = scene_add_material(scene, &lamp);
+    struct scene_material key_light = scene->materials[0];
+    strcpy(key_light.name, "lamp");
+    key_light.emissive[0] = key_light.emissive[1] = key_light.emissive[2] = 1.0f;
+    key_light.emissive_strength = 10.0f;
+    uint32_t material = scene_add_material(scene, &key_light);
     struct scene_vertex vertices[4] = {0};
     for (int i = 0; i < 4; i++) {
         vertices[i].position[0] = (float)(i == 1 || i == 2 ? half : -half);
@@ -155,7 +155,7 @@ static void test_emitter_lights_by_its_form_factor(void **state)
 
     double x = half / distance, root = sqrt(1.0 + x * x);
     double form_factor = 4.0 / (2.0 * M_PI) * 2.0 * x / root * atan(x / root);
-    // The lamp shows the camera its unlit back and is culled.
+    // The light shows the camera its unlit back and is culled.
     assert_close(measure(scene, 3.0f), 0.5 * 10.0 * form_factor, "planar emitter");
     scene_destroy(&scene);
 }

@@ -1,4 +1,4 @@
-// Proves which edits voxelize: those of lamps and materials never do, the camera's and objects'
+// Proves which edits voxelize: those of lights and materials never do, the camera's and objects'
 // motion does, and a picture that repeats does nothing at all. Reads the frame's statistics.
 #include <setjmp.h>
 #include <stdarg.h>

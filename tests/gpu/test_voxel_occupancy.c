@@ -99,7 +99,7 @@ static bool has_area(const float corners[9])
     return fabs(x) + fabs(y) + fabs(e[0] * f[1] - e[1] * f[0]) > 1e-9;
 }
 
-static void place(struct scene_node *node, uint64_t *seed, bool mirrored)
+static void set_transform(struct scene_node *node, uint64_t *seed, bool mirrored)
 {
     float anchor = voxel_scene_anchor();
     for (int axis = 0; axis < 3; axis++) {
@@ -135,16 +135,16 @@ static void corners_in_voxels(const struct scene *scene, uint32_t node, double v
 
 static bool separates(const double axis[3], const double v[3][3], const double low[3], double edge)
 {
-    double box_min = 0.0, box_max = 0.0, least = INFINITY, most = -INFINITY;
+    double box_min = 0.0, box_max = 0.0, minimum = INFINITY, maximum = -INFINITY;
     for (int i = 0; i < 3; i++) {
         double a = axis[i] * low[i], b = axis[i] * (low[i] + edge);
         box_min += fmin(a, b);
         box_max += fmax(a, b);
         double at = axis[0] * v[i][0] + axis[1] * v[i][1] + axis[2] * v[i][2];
-        least = fmin(least, at);
-        most = fmax(most, at);
+        minimum = fmin(minimum, at);
+        maximum = fmax(maximum, at);
     }
-    return most < box_min || least > box_max;
+    return maximum < box_min || minimum > box_max;
 }
 
 // Whether the triangle overlaps the closed cube [low, low + edge]^3.
@@ -221,8 +221,8 @@ static void compare_triangle(const double v[3][3], const struct voxel_box *level
             }
 }
 
-static size_t gather_masks(const struct voxel_records *records, uint32_t level, uint32_t surface,
-                           const struct voxel_box *box, uint8_t *masks)
+static size_t collect_masks(const struct voxel_records *records, uint32_t level, uint32_t surface,
+                            const struct voxel_box *box, uint8_t *masks)
 {
     size_t found = 0, edge = (size_t)(box->high[0] - box->low[0]);
     memset(masks, 0, edge * edge * edge);
@@ -251,7 +251,7 @@ static void check_scene(struct voxel_rig *rig, const struct scene *scene, uint32
         volume->everything = true;
         voxel_rig_voxelize(rig, volume, eye);
     }
-    assert_int_equal(volume->lit_levels, 2);
+    assert_int_equal(volume->cell_level_count, 2);
     assert_true(volume->levels[1].voxel_edge_m == 1.0);
     assert_true(volume->anchor[0] == (double)voxel_scene_anchor());
     struct voxel_records records = voxel_read_records(volume);
@@ -263,7 +263,7 @@ static void check_scene(struct voxel_rig *rig, const struct scene *scene, uint32
         for (uint32_t node = first; node < scene->node_count; node++) {
             double v[3][3];
             corners_in_voxels(scene, node, volume->levels[level].voxel_edge_m, v);
-            held += gather_masks(&records, level, node, &volume->levels[level].box, masks);
+            held += collect_masks(&records, level, node, &volume->levels[level].box, masks);
             compare_triangle(v, &volume->levels[level].box, masks, &kinds[(node - first) % KINDS]);
         }
     for (uint32_t kind = 0; kind < KINDS; kind++) {
@@ -291,7 +291,7 @@ static void test_voxels_are_those_that_triangles_overlap(void **state)
             make_triangle(&seed, i % KINDS, corners);
         while (!has_area(corners));
         uint32_t node = voxel_scene_add(scene, corners, 1, NULL, 0);
-        place(&scene->nodes[node], &seed, i % KINDS == 8);
+        set_transform(&scene->nodes[node], &seed, i % KINDS == 8);
     }
     struct voxel_rig rig;
     voxel_rig_init(&rig, scene);

@@ -65,7 +65,7 @@ static uint32_t add_ball(struct scene *scene, uint32_t rows, double radius_m)
     return node;
 }
 
-static void place_object(struct walk *walk, uint32_t object)
+static void add_object(struct walk *walk, uint32_t object)
 {
     float translation[3], rotation[4], scale[3];
     double length = 0.0;
@@ -97,7 +97,7 @@ static void begin_walk(struct walk *walk, uint64_t seed, enum gi_method method)
                              -r, -5.3f, -r, -r, -5.2f, r, r, -5.1f, r};
     voxel_scene_add(walk->scene, floor, 2, NULL, 0);
     for (uint32_t i = 0; i < OBJECTS; i++)
-        place_object(walk, i);
+        add_object(walk, i);
     voxel_rig_init(&walk->rig, walk->scene);
     walk->volume =
         voxel_rig_volume(&walk->rig, method, EDGE, method == GI_METHOD_CLIPMAP ? CLIP_LEVELS : 0);
@@ -141,7 +141,7 @@ static void step_object(struct walk *walk)
         scene_set_node_transform(walk->scene, walk->first_node + object, translation, rotation,
                                  scale);
     } else {
-        place_object(walk, object);
+        add_object(walk, object);
     }
 }
 
@@ -276,10 +276,10 @@ static void test_only_where_objects_move_is_voxelized(void **state)
     struct walk walk;
     begin_walk(&walk, 6, GI_METHOD_CLIPMAP);
     for (uint32_t step = 0; step < 50; step++) {
-        struct resident_instance before = walk.rig.resident->instances[1];
-        place_object(&walk, 0);
+        struct gpu_scene_instance before = walk.rig.gpu_scene->instances[1];
+        add_object(&walk, 0);
         voxel_rig_voxelize(&walk.rig, walk.volume, walk.eye);
-        const struct resident_instance *after = &walk.rig.resident->instances[1];
+        const struct gpu_scene_instance *after = &walk.rig.gpu_scene->instances[1];
         for (uint32_t level = 0; level < CLIP_LEVELS; level++) {
             double edge = walk.volume->levels[level].voxel_edge_m, boxes[2] = {1.0, 1.0};
             for (int axis = 0; axis < 3; axis++) {
@@ -288,8 +288,8 @@ static void test_only_where_objects_move_is_voxelized(void **state)
             }
             // Boxes that overlap are taken together.
             bool together = walk.volume->dirty[level].count < 2;
-            double most = boxes[0] + boxes[1];
-            assert_true(voxels_of_level(walk.volume, level) <= (together ? 4.0 : 1.0) * most);
+            double maximum = boxes[0] + boxes[1];
+            assert_true(voxels_of_level(walk.volume, level) <= (together ? 4.0 : 1.0) * maximum);
         }
     }
     end_walk(&walk);
@@ -300,7 +300,7 @@ static void test_pools_do_not_leak(void **state)
     (void)state;
     struct walk walk;
     begin_walk(&walk, 7, GI_METHOD_CLIPMAP);
-    uint32_t counters[COUNTER_LISTS], most[3] = {0}, taken[3] = {0};
+    uint32_t counters[COUNTER_LISTS], maximum[3] = {0}, taken[3] = {0};
     for (uint32_t step = 0; step < LEAK_STEPS; step++) {
         step_camera(&walk);
         if (step % 2 == 0)
@@ -316,15 +316,15 @@ static void test_pools_do_not_leak(void **state)
             // The number of free ones is below 0 until it is mended.
             int32_t free_ones = (int32_t)counters[pools[i][1]];
             uint32_t used = counters[pools[i][0]] - (uint32_t)(free_ones > 0 ? free_ones : 0);
-            most[i] = used > most[i] ? used : most[i];
+            maximum[i] = used > maximum[i] ? used : maximum[i];
             taken[i] = counters[pools[i][0]];
         }
         assert_int_equal(counters[COUNTER_OVERFLOW], 0);
     }
     const char *const names[] = {"cells", "surfels", "face records"};
     for (int i = 0; i < 3; i++) {
-        print_message("  %s: %u in use at most, %u ever taken\n", names[i], most[i], taken[i]);
-        assert_true(taken[i] <= most[i] + most[i] / 20 + 64);
+        print_message("  %s: %u in use at most, %u ever taken\n", names[i], maximum[i], taken[i]);
+        assert_true(taken[i] <= maximum[i] + maximum[i] / 20 + 64);
     }
     compare_with_fresh(&walk, LEAK_STEPS);
     end_walk(&walk);
@@ -339,7 +339,7 @@ static void test_face_records_grow(void **state)
     uint32_t capacity = walk.volume->face_capacity;
     walk.volume->face_capacity = 100;
     voxel_rig_light(&walk.rig, walk.volume);
-    place_object(&walk, 0);
+    add_object(&walk, 0);
     voxel_rig_voxelize(&walk.rig, walk.volume, walk.eye);
     assert_int_equal(walk.volume->face_capacity, 2 * capacity);
     compare_with_fresh(&walk, 1);
@@ -385,11 +385,11 @@ static float *unwrap(const struct texels *texels, const struct voxel_level_block
     for (int32_t z = 0; z < (int32_t)EDGE; z++)
         for (int32_t y = 0; y < (int32_t)EDGE; y++)
             for (int32_t x = 0; x < (int32_t)EDGE; x++) {
-                const int32_t place[3] = {x, y, z};
+                const int32_t position[3] = {x, y, z};
                 int32_t at[3];
                 for (int axis = 0; axis < 3; axis++)
                     at[axis] = level->texel_origin[axis] +
-                               ((level->origin[axis] + place[axis]) & (int32_t)(EDGE - 1));
+                               ((level->origin[axis] + position[axis]) & (int32_t)(EDGE - 1));
                 at[0] += level->face_stride * (int32_t)face;
                 memcpy(out, texel_at(texels, at), 4 * sizeof(float));
                 out += 4;
@@ -399,7 +399,7 @@ static float *unwrap(const struct texels *texels, const struct voxel_level_block
 
 // A place in voxels from the level's lowest corner, no nearer to its rim than half a voxel; mostly
 // within half a voxel of where addresses wrap around.
-static void random_place(uint64_t *seed, const struct voxel_level_block *level, double out[3])
+static void random_position(uint64_t *seed, const struct voxel_level_block *level, double out[3])
 {
     for (int axis = 0; axis < 3; axis++) {
         out[axis] = in_range(seed, 0.5, EDGE - 0.5);
@@ -433,19 +433,19 @@ static void test_filtering_across_the_seam(void **state)
             float *plain = unwrap(&texels, level, face);
             struct texels straight = {.values = plain, .width = EDGE, .height = EDGE};
             for (uint32_t point = 0; point < 4000; point++) {
-                double place[3], at[3], expected[4], found[4];
-                random_place(&walk.seed, level, place);
+                double position[3], at[3], expected[4], found[4];
+                random_position(&walk.seed, level, position);
                 // As sample_level() in shaders/lib/cone.glsl.
                 for (int axis = 0; axis < 3; axis++) {
-                    double voxel = level->origin[axis] + place[axis];
+                    double voxel = level->origin[axis] + position[axis];
                     at[axis] = voxel - floor(voxel / EDGE) * EDGE + level->texel_origin[axis];
                 }
                 at[0] += (double)level->face_stride * face;
                 filter(&texels, at, found);
                 // The filter's last neighbour has no weight where it lies beyond the rim.
                 for (int axis = 0; axis < 3; axis++)
-                    place[axis] = fmin(place[axis], EDGE - 0.5 - 1e-12);
-                filter(&straight, place, expected);
+                    position[axis] = fmin(position[axis], EDGE - 0.5 - 1e-12);
+                filter(&straight, position, expected);
                 for (int c = 0; c < 4; c++)
                     largest = fmax(largest, fabs(found[c] - expected[c]));
                 filled += expected[3] > 0.0;

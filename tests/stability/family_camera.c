@@ -44,7 +44,7 @@ static struct view_camera camera_at(const struct stage *stage, float x, float y,
     return camera;
 }
 
-static void run_places(struct stability_run *run)
+static void run_positions(struct stability_run *run)
 {
     struct stage stage;
     if (!stage_create(run, &(struct stage_params){0}, &stage))
@@ -53,21 +53,22 @@ static void run_places(struct stability_run *run)
         const char *name;
         float eye[3];
         float target[3];
-    } places[] = {
+    } camera_positions[] = {
         {"in-the-box", {-0.75f, 0.5f, -0.75f}, {0.0f, 1.0f, 1.0f}},
         {"in-the-lamp", {0.5f, 2.25f, 0.5f}, {0.0f, 1.0f, -1.0f}},
         {"on-the-floor", {0.25f, 0.0f, 1.5f}, {0.0f, 0.0f, -1.0f}},
         {"on-a-corner", {-0.25f, 1.0f, -0.25f}, {1.0f, 1.0f, 1.0f}},
         {"in-a-wall-s-plane", {-2.0f, 1.0f, 1.5f}, {-2.0f, 1.0f, -1.0f}},
     };
-    struct named_camera cameras[sizeof(places) / sizeof(places[0])];
-    const uint32_t count = sizeof(places) / sizeof(places[0]);
-    stage.scene->lights[stage.lamp].radius_m = 0.25f;
+    struct named_camera cameras[sizeof(camera_positions) / sizeof(camera_positions[0])];
+    const uint32_t count = sizeof(camera_positions) / sizeof(camera_positions[0]);
+    stage.scene->lights[stage.light].radius_m = 0.25f;
     for (uint32_t i = 0; i < count; i++) {
-        const float *eye = places[i].eye;
-        cameras[i] =
-            (struct named_camera){places[i].name, camera_at(&stage, eye[0], eye[1], eye[2])};
-        memcpy(cameras[i].camera.target, places[i].target, sizeof(places[i].target));
+        const float *eye = camera_positions[i].eye;
+        cameras[i] = (struct named_camera){camera_positions[i].name,
+                                           camera_at(&stage, eye[0], eye[1], eye[2])};
+        memcpy(cameras[i].camera.target, camera_positions[i].target,
+               sizeof(camera_positions[i].target));
     }
     draw_from(run, &stage, cameras, count);
     scene_destroy(&stage.scene);
@@ -220,7 +221,7 @@ static const struct stability_case cases[] = {
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "values not finite",
-     .run = run_places},
+     .run = run_positions},
     {.name = "camera-directions",
      .invariant = "up along the view, no up, no direction: finite and not black",
      .methods = STABILITY_ALL,

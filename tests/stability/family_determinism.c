@@ -9,12 +9,13 @@
 #include "tests/stability/stage.h"
 
 static void compare(struct stability_run *run, const struct picture *test,
-                    const struct picture *truth, const char *what)
+                    const struct picture *expected, const char *what)
 {
     uint32_t pixel = 0;
-    double difference = stability_difference(test, truth, &pixel);
-    stability_measure(run, (double)stability_count_changed(test, truth), "%s: %.3g at pixel %u, %u",
-                      what, difference, pixel % test->width, pixel / test->width);
+    double difference = stability_difference(test, expected, &pixel);
+    stability_measure(run, (double)stability_count_changed(test, expected),
+                      "%s: %.3g at pixel %u, %u", what, difference, pixel % test->width,
+                      pixel / test->width);
 }
 
 static bool draw_stage(struct stability_run *run, uint64_t shuffle, struct picture *out_picture);
@@ -126,9 +127,9 @@ static void run_threads(struct stability_run *run)
 
 static void edit(struct stage *stage, int number)
 {
-    static const float still[4] = {0.0f, 0.0f, 0.0f, 1.0f}, whole[3] = {1.0f, 1.0f, 1.0f};
+    static const float no_turn[4] = {0.0f, 0.0f, 0.0f, 1.0f}, whole[3] = {1.0f, 1.0f, 1.0f};
     struct scene_material walls = stage->scene->materials[stage->walls];
-    struct scene_light lamp = stage->scene->lights[stage->lamp];
+    struct scene_light light = stage->scene->lights[stage->light];
     switch (number) {
     case 0:
         walls.base_color[1] = 0.5f;
@@ -136,15 +137,15 @@ static void edit(struct stage *stage, int number)
         break;
     case 1:
         scene_set_node_transform(stage->scene, stage->box, (const float[3]){-0.5f, 0.0f, -1.0f},
-                                 still, whole);
+                                 no_turn, whole);
         break;
     case 2:
-        lamp.intensity *= 1.5f;
-        scene_set_light(stage->scene, stage->lamp, &lamp);
+        light.intensity *= 1.5f;
+        scene_set_light(stage->scene, stage->light, &light);
         break;
     default:
         scene_set_node_transform(stage->scene, stage->ball, (const float[3]){1.0f, 0.75f, 0.0f},
-                                 still, whole);
+                                 no_turn, whole);
     }
 }
 

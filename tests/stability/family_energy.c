@@ -15,7 +15,7 @@ enum { SOLID, THIN, THIN_PIXELS };
 // A closed cube of 2.6 m seen from inside, all walls alike.
 static bool create_box(struct stability_run *run, float albedo, float emission, struct stage *stage)
 {
-    *stage = (struct stage){.scene = scene_create("box"), .scale = 1.0, .lamp = SCENE_NONE};
+    *stage = (struct stage){.scene = scene_create("box"), .scale = 1.0, .light = SCENE_NONE};
     if (!stage->scene) {
         stability_fail(run, "out of memory");
         return false;
@@ -109,7 +109,7 @@ static void run_white(struct stability_run *run)
 #define MAX_DARK_FRAMES 200u
 
 // Frames until half of the light is gone, and that all goes.
-static void run_lamp_out(struct stability_run *run)
+static void run_light_out(struct stability_run *run)
 {
     struct stage stage;
     struct stability_view view;
@@ -121,9 +121,9 @@ static void run_lamp_out(struct stability_run *run)
     bool done =
         stability_view_open(&view, run, stage.scene) && stability_view_settle(&view, &params);
     double lit = done ? stability_mean(&view.picture) : 0.0;
-    struct scene_light lamp = stage.scene->lights[stage.lamp];
-    lamp.enabled = false;
-    scene_set_light(stage.scene, stage.lamp, &lamp);
+    struct scene_light light = stage.scene->lights[stage.light];
+    light.enabled = false;
+    scene_set_light(stage.scene, stage.light, &light);
     for (uint32_t frame = 1; done && frame <= MAX_DARK_FRAMES; frame++) {
         done = stability_view_draw(&view, &params) == RENDER_DRAWN;
         if (done && stability_mean(&view.picture) > 0.5 * lit)
@@ -139,7 +139,7 @@ static void run_lamp_out(struct stability_run *run)
 
 // A white ball in an even white sky: no pixel brighter than the sky.
 // `variant` is its metallic.
-static void run_gloss(struct stability_run *run)
+static void run_specular_rays(struct stability_run *run)
 {
     for (int i = 0; i < 5; i++) {
         struct stage stage = {.scene = scene_create("furnace"), .scale = 1.0};
@@ -251,13 +251,13 @@ static const struct stability_case cases[] = {
      .methods = STABILITY_VOXELS,
      .bound = 10.0,
      .unit = "frames",
-     .run = run_lamp_out},
+     .run = run_light_out},
     {.name = "energy-metal",
      .invariant = "a white metal in a white sky is no brighter than it, at any roughness and angle",
      .methods = STABILITY_DRAWN,
      .bound = 0.01,
      .unit = "of the sky",
-     .run = run_gloss,
+     .run = run_specular_rays,
      .variant = 1},
     {.name = "energy-lacquer",
      .invariant = "the same of a white dielectric",
@@ -267,7 +267,7 @@ static const struct stability_case cases[] = {
      // The layer of glTF 2.0 keeps from the base what it reflects at the half vector, which at
      // grazing view is far less than it reflects in all.
      .known = 0.9,
-     .run = run_gloss},
+     .run = run_specular_rays},
     {.name = "energy-per-bounce",
      .invariant = "each bounce adds to the stage what it adds to the reference's picture",
      .methods = STABILITY_VOXELS,

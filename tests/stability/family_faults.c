@@ -14,7 +14,7 @@ struct faults {
     struct renderer *renderer;
     struct stage stage;
     struct frame_params params;
-    struct picture truth;
+    struct picture expected;
     uint32_t broken;
 };
 
@@ -32,7 +32,7 @@ static bool faults_open(struct faults *faults, struct stability_run *run)
     if (!stage_create(run, &(struct stage_params){0}, &drawn))
         return false;
     faults->params.camera = drawn.camera;
-    bool done = stability_draw(run, drawn.scene, &faults->params, &faults->truth);
+    bool done = stability_draw(run, drawn.scene, &faults->params, &faults->expected);
     scene_destroy(&drawn.scene);
     if (!done)
         return false;
@@ -43,7 +43,7 @@ static bool faults_open(struct faults *faults, struct stability_run *run)
 
 static void faults_close(struct faults *faults)
 {
-    picture_finish(&faults->truth);
+    picture_finish(&faults->expected);
     scene_destroy(&faults->stage.scene);
     stability_renew(faults->run);
 }
@@ -68,12 +68,13 @@ static bool draw_frame(struct faults *faults, struct view *view, struct error *o
 }
 
 // The picture is what it was before there were faults.
-static void check_truth(struct faults *faults, uint32_t number)
+static void check_reference(struct faults *faults, uint32_t number)
 {
     struct picture picture;
     if (!stability_draw(faults->run, faults->stage.scene, &faults->params, &picture))
         return;
-    note(faults, stability_count_changed(&picture, &faults->truth) == 0, "another picture", number);
+    note(faults, stability_count_changed(&picture, &faults->expected) == 0, "another picture",
+         number);
     picture_finish(&picture);
 }
 
@@ -113,7 +114,7 @@ static void run_memory(struct stability_run *run)
             number++;
         note(&faults, number > 10 && number < MAX_FAULTS, "how many allocations there are", number);
         note(&faults, renderer_gl_error_count(faults.renderer) == 0, "GL errors", number);
-        check_truth(&faults, number);
+        check_reference(&faults, number);
     }
     faults_close(&faults);
 }
@@ -139,7 +140,7 @@ static void run_programs(struct stability_run *run)
         note(&faults, drawn && failures >= 3, "shaders", failures);
         renderer_view_destroy(faults.renderer, &view);
         renderer_set_scene(faults.renderer, NULL, &error);
-        check_truth(&faults, failures);
+        check_reference(&faults, failures);
     }
     faults_close(&faults);
 }
@@ -164,7 +165,7 @@ static void run_context(struct stability_run *run)
         renderer_set_scene(faults.renderer, NULL, &error);
         stability_renew(run);
         faults.renderer = stability_renderer(run);
-        check_truth(&faults, 0);
+        check_reference(&faults, 0);
     }
     faults_close(&faults);
 }

@@ -29,18 +29,18 @@ static bool draw_with(struct stability_run *run, add_function add, struct pictur
 // What `hard` adds looks as what `plain` adds (NULL: nothing), to the last pixel.
 static void compare(struct stability_run *run, add_function hard, add_function plain)
 {
-    struct picture truth, test;
-    if (draw_with(run, plain, &truth) && draw_with(run, hard, &test)) {
-        stability_compare(run, &test, &truth, "");
+    struct picture expected, test;
+    if (draw_with(run, plain, &expected) && draw_with(run, hard, &test)) {
+        stability_compare(run, &test, &expected, "");
         picture_finish(&test);
     }
-    picture_finish(&truth);
+    picture_finish(&expected);
 }
 
 // Takes `truth` for all pixels next to which what `hard` adds changes direct light, by itself or by
 // its shadow: what is left are others' pixels.
 static bool leave_own_pixels_out(struct stability_run *run, add_function hard, add_function plain,
-                                 struct picture *test, const struct picture *truth)
+                                 struct picture *test, const struct picture *expected)
 {
     struct stability_run direct = {
         .suite = run->suite, .test = run->test, .method = GI_METHOD_NONE};
@@ -55,7 +55,7 @@ static bool leave_own_pixels_out(struct stability_run *run, add_function hard, a
             for (uint32_t column = x > 0 ? x - 1 : 0; column <= x + 1 && column < with.width;
                  column++) {
                 size_t at = 3 * ((size_t)row * with.width + column);
-                memcpy(test->rgb + at, truth->rgb + at, 3 * sizeof(float));
+                memcpy(test->rgb + at, expected->rgb + at, 3 * sizeof(float));
             }
     }
     if (!done)
@@ -67,17 +67,17 @@ static bool leave_own_pixels_out(struct stability_run *run, add_function hard, a
 
 static void compare_others(struct stability_run *run, add_function hard, add_function plain)
 {
-    struct picture truth = {0}, test = {0};
-    if (draw_with(run, plain, &truth) && draw_with(run, hard, &test)) {
+    struct picture expected = {0}, test = {0};
+    if (draw_with(run, plain, &expected) && draw_with(run, hard, &test)) {
         stability_keep(run, &test, "drawn");
-        if (leave_own_pixels_out(run, hard, plain, &test, &truth)) {
+        if (leave_own_pixels_out(run, hard, plain, &test, &expected)) {
             uint32_t pixel = 0;
-            double difference = stability_difference(&test, &truth, &pixel);
+            double difference = stability_difference(&test, &expected, &pixel);
             stability_measure(run, difference, "pixel %u, %u", pixel % test.width,
                               pixel / test.width);
         }
     }
-    picture_finish(&truth);
+    picture_finish(&expected);
     picture_finish(&test);
 }
 
@@ -130,7 +130,7 @@ static void run_slivers(struct stability_run *run)
     compare_others(run, add_slivers, NULL);
 }
 
-// A sheet that faces the camera and the lamp, of cells x cells quads, many times over.
+// A sheet that faces the camera and the light, of cells x cells quads, many times over.
 static void add_sheet_of(struct stage *stage, float size_m, uint32_t cells, uint32_t copies,
                          void (*change)(struct scene_vertex triangle[3], uint32_t number),
                          uint32_t material)
@@ -427,17 +427,17 @@ static void run_giant_voxels(struct stability_run *run)
 {
     struct stability_run direct = {
         .suite = run->suite, .test = run->test, .method = GI_METHOD_NONE};
-    struct picture least = {0}, most = {0}, test = {0};
-    if (draw_with(&direct, NULL, &least) && draw_with(run, NULL, &most) &&
+    struct picture minimum = {0}, maximum = {0}, test = {0};
+    if (draw_with(&direct, NULL, &minimum) && draw_with(run, NULL, &maximum) &&
         draw_with(run, add_giant, &test)) {
-        double low = stability_mean(&least), high = stability_mean(&most);
+        double low = stability_mean(&minimum), high = stability_mean(&maximum);
         double mean = stability_mean(&test);
         stability_measure(run, fmax(low - mean, mean - high) / high,
                           "mean %.4g, without %.4g, direct %.4g", mean, high, low);
         stability_keep(run, &test, "drawn");
     }
-    picture_finish(&least);
-    picture_finish(&most);
+    picture_finish(&minimum);
+    picture_finish(&maximum);
     picture_finish(&test);
 }
 
@@ -465,7 +465,7 @@ static void add_patch(struct stage *stage, uint32_t cells)
         scene_add_primitive(scene, v, edge * edge, indices, cells * cells * 6, material);
     uint32_t node = builtin_add_mesh_node(scene, "patch", mesh);
     if (node != SCENE_NONE)
-        stage_place(stage, (const float[3]){-0.5f, 1.25f, 0.5f}, scene->nodes[node].translation);
+        stage_to_world(stage, (const float[3]){-0.5f, 1.25f, 0.5f}, scene->nodes[node].translation);
     scene_update_world_transforms(scene);
     free(v);
     free(indices);

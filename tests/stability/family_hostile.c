@@ -41,7 +41,8 @@ static bool read_source(struct stability_run *run, const char *name, struct sour
 }
 
 // Mutations prove most where some are taken and some are not.
-static void check_share(struct stability_run *run, const char *name, uint32_t taken, uint32_t count)
+static void check_fraction(struct stability_run *run, const char *name, uint32_t taken,
+                           uint32_t count)
 {
     if (taken < count / 200 || taken > count - count / 200)
         stability_fail(run, "%s: %u of %u mutations are taken", name, taken, count);
@@ -95,7 +96,7 @@ static void mutate_file(struct stability_run *run, const char *name, import_func
         stability_measure(run, *broken_count, "%s, mutation %u: %s", name, i,
                           broken ? broken : "good");
     }
-    check_share(run, name, taken_count, FILE_MUTATIONS);
+    check_fraction(run, name, taken_count, FILE_MUTATIONS);
     free(source.bytes);
     free(mutated);
 }
@@ -175,7 +176,7 @@ static void run_messages(struct stability_run *run)
             stability_measure(run, broken_count, "%s, mutation %u: %s", name, i,
                               broken ? broken : "good");
         }
-        check_share(run, name, taken_count, MESSAGE_MUTATIONS);
+        check_fraction(run, name, taken_count, MESSAGE_MUTATIONS);
         free(source.bytes);
     }
     free(command);

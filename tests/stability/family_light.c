@@ -16,22 +16,22 @@ static void run_intensities(struct stability_run *run)
 {
     static const double strengths[] = {1e-6, 1e-3, 1e4, 1e9};
     struct stage stage;
-    struct picture truth;
-    if (!stage_create(run, &(struct stage_params){.lamp_cd = 1.0f}, &stage) ||
-        !stage_draw(run, &stage, &truth))
+    struct picture expected;
+    if (!stage_create(run, &(struct stage_params){.light_cd = 1.0f}, &stage) ||
+        !stage_draw(run, &stage, &expected))
         return;
     for (size_t i = 0; i < sizeof(strengths) / sizeof(strengths[0]); i++) {
         struct picture test;
         char name[32];
         snprintf(name, sizeof(name), "%g cd", strengths[i]);
-        if (!stage_create(run, &(struct stage_params){.lamp_cd = (float)strengths[i]}, &stage) ||
+        if (!stage_create(run, &(struct stage_params){.light_cd = (float)strengths[i]}, &stage) ||
             !stage_draw(run, &stage, &test))
             break;
         scale_picture(&test, 1.0 / strengths[i]);
-        stability_compare(run, &test, &truth, name);
+        stability_compare(run, &test, &expected, name);
         picture_finish(&test);
     }
-    picture_finish(&truth);
+    picture_finish(&expected);
 }
 
 // Edits that must not be taken.
@@ -45,19 +45,19 @@ static void run_refused(struct stability_run *run)
     struct render_settings settings;
     struct view_options view = {0};
     render_settings_init(&settings);
-    float before = stage.scene->lights[stage.lamp].intensity;
+    float before = stage.scene->lights[stage.light].intensity;
     for (size_t i = 0; i < sizeof(values) / sizeof(values[0]); i++) {
         struct error error = {""};
         bool done = document_set_text(stage.scene, &settings, &view, "lights.0.intensity",
                                       values[i], &error);
-        float after = stage.scene->lights[stage.lamp].intensity;
+        float after = stage.scene->lights[stage.light].intensity;
         taken += done || memcmp(&after, &before, sizeof(after)) != 0 || error.message[0] == '\0';
         stability_measure(run, taken, "lights.0.intensity=%s", values[i]);
     }
     scene_destroy(&stage.scene);
 }
 
-// A lamp that a program set to what is no intensity gives no light, and no NaN.
+// A light that a program set to what is no intensity gives no light, and no NaN.
 static void run_no_intensity(struct stability_run *run)
 {
     static const float values[] = {NAN, -1.0f, INFINITY, -INFINITY};
@@ -66,7 +66,7 @@ static void run_no_intensity(struct stability_run *run)
         struct picture picture;
         if (!stage_create(run, &(struct stage_params){0}, &stage))
             return;
-        stage.scene->lights[stage.lamp].intensity = values[i];
+        stage.scene->lights[stage.light].intensity = values[i];
         if (!stage_draw(run, &stage, &picture))
             return;
         stability_measure(run, stability_mean(&picture), "intensity %g", (double)values[i]);
@@ -74,18 +74,18 @@ static void run_no_intensity(struct stability_run *run)
     }
 }
 
-static void move_lamp(struct stage *stage, const float place[3])
+static void move_light(struct stage *stage, const float position[3])
 {
-    scene_set_light_placement(stage->scene, stage->lamp, place,
+    scene_set_light_placement(stage->scene, stage->light, position,
                               (const float[3]){0.0f, -1.0f, 0.0f});
 }
 
-static void run_places(struct stability_run *run)
+static void run_positions(struct stability_run *run)
 {
     static const struct {
         const char *name;
-        float place[3];
-    } places[] = {
+        float position[3];
+    } light_positions[] = {
         {"on-the-floor", {0.25f, 0.0f, 0.75f}},
         {"in-a-corner", {-2.0f, 0.0f, -2.0f}},
         {"in-a-voxel-s-middle", {0.03125f, 1.53125f, 0.03125f}},
@@ -100,15 +100,15 @@ static void run_places(struct stability_run *run)
     struct frame_params params = stability_params(run);
     params.camera = stage.camera;
     bool done = reference || stability_view_open(&view, run, stage.scene);
-    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]) && done; i++) {
+    for (size_t i = 0; i < sizeof(light_positions) / sizeof(light_positions[0]) && done; i++) {
         struct picture picture = {0};
-        move_lamp(&stage, places[i].place);
+        move_light(&stage, light_positions[i].position);
         done = reference ? stability_draw(run, stage.scene, &params, &picture)
                          : stability_view_settle(&view, &params);
         if (!done)
             break;
-        stability_measure(run, (double)run->bad_values, "%s", places[i].name);
-        stability_keep(run, reference ? &picture : &view.picture, places[i].name);
+        stability_measure(run, (double)run->bad_values, "%s", light_positions[i].name);
+        stability_keep(run, reference ? &picture : &view.picture, light_positions[i].name);
         picture_finish(&picture);
     }
     if (!reference)
@@ -116,7 +116,7 @@ static void run_places(struct stability_run *run)
     scene_destroy(&stage.scene);
 }
 
-// In the closed box a lamp lights nothing of the room.
+// In the closed box a light lights nothing of the room.
 static void run_in_solid(struct stability_run *run)
 {
     struct stage stage;
@@ -124,7 +124,7 @@ static void run_in_solid(struct stability_run *run)
     if (!stage_draw_usual(run, &lit))
         return;
     if (stage_create(run, &(struct stage_params){0}, &stage)) {
-        move_lamp(&stage, (const float[3]){-0.75f, 0.5f, -0.75f});
+        move_light(&stage, (const float[3]){-0.75f, 0.5f, -0.75f});
         if (stage_draw(run, &stage, &hidden)) {
             stability_measure(run, stability_mean(&hidden) / stability_mean(&lit), "mean");
             stability_keep(run, &hidden, "hidden");
@@ -141,10 +141,10 @@ static bool draw_spot(struct stability_run *run, enum scene_light_type type, flo
     if (!stage_create(run, &(struct stage_params){.no_objects = true}, &stage))
         return false;
     // Under the ceiling, so that half a turn sees all but the ceiling.
-    move_lamp(&stage, (const float[3]){0.0f, 2.9375f, 0.0f});
-    struct scene_light *lamp = &stage.scene->lights[stage.lamp];
-    lamp->type = type;
-    lamp->inner_cone_rad = lamp->outer_cone_rad = cone_rad;
+    move_light(&stage, (const float[3]){0.0f, 2.9375f, 0.0f});
+    struct scene_light *light = &stage.scene->lights[stage.light];
+    light->type = type;
+    light->inner_cone_rad = light->outer_cone_rad = cone_rad;
     stage.camera.target[1] = 0.0f;
     stage.camera.fov_y_rad = 1.0f;
     return stage_draw(run, &stage, out_picture);
@@ -180,13 +180,13 @@ static void run_closed_spot(struct stability_run *run)
 static bool draw_many(struct stability_run *run, uint32_t count, struct picture *out_picture)
 {
     struct stage stage;
-    if (!stage_create(run, &(struct stage_params){.no_objects = true, .no_lamp = true}, &stage))
+    if (!stage_create(run, &(struct stage_params){.no_objects = true, .no_light = true}, &stage))
         return false;
-    struct scene_light lamp;
-    scene_light_init(&lamp, SCENE_LIGHT_POINT, "lamp");
-    lamp.intensity = 30.0f / (float)count;
+    struct scene_light light;
+    scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
+    light.intensity = 30.0f / (float)count;
     for (uint32_t i = 0; i < count; i++)
-        scene_add_light(stage.scene, &lamp, (const float[3]){0.5f, 2.25f, 0.5f},
+        scene_add_light(stage.scene, &light, (const float[3]){0.5f, 2.25f, 0.5f},
                         (const float[3]){0.0f, -1.0f, 0.0f});
     scene_update_world_transforms(stage.scene);
     return stage_draw(run, &stage, out_picture);
@@ -208,7 +208,7 @@ static void run_none(struct stability_run *run)
 {
     struct stage stage;
     struct picture picture;
-    if (!stage_create(run, &(struct stage_params){.no_lamp = true}, &stage) ||
+    if (!stage_create(run, &(struct stage_params){.no_light = true}, &stage) ||
         !stage_draw(run, &stage, &picture))
         return;
     for (size_t i = 0; i < 3 * picture_pixel_count(&picture); i++)
@@ -243,7 +243,7 @@ static const struct stability_case cases[] = {
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "values not finite",
-     .run = run_places},
+     .run = run_positions},
     {.name = "light-in-solid",
      .invariant = "a lamp in a closed box leaves the room dark",
      .methods = STABILITY_ALL,

@@ -138,7 +138,7 @@ static bool draw_sheets(struct stability_run *run, const struct scene_material *
 static void run_clear(struct stability_run *run)
 {
     struct scene_material clear;
-    struct picture truth, test;
+    struct picture expected, test;
     scene_material_init(&clear, "clear");
     clear.metallic = 0.0f;
     if (run->test->variant == 0) {
@@ -149,29 +149,29 @@ static void run_clear(struct stability_run *run)
         clear.ior = 1.0f;
         clear.roughness = 0.0f;
     }
-    if (draw_sheets(run, &clear, 0, &truth) && draw_sheets(run, &clear, 3, &test)) {
-        stability_compare(run, &test, &truth, "");
+    if (draw_sheets(run, &clear, 0, &expected) && draw_sheets(run, &clear, 3, &test)) {
+        stability_compare(run, &test, &expected, "");
         picture_finish(&test);
     }
-    picture_finish(&truth);
+    picture_finish(&expected);
 }
 
 static void run_opaque(struct stability_run *run)
 {
     struct scene_material opaque;
-    struct picture truth, test;
+    struct picture expected, test;
     scene_material_init(&opaque, "opaque");
     opaque.metallic = 0.0f;
     opaque.ior = 1.0f;
     opaque.base_color[2] = 0.25f;
-    if (draw_sheets(run, &opaque, 1, &truth)) {
+    if (draw_sheets(run, &opaque, 1, &expected)) {
         opaque.alpha_mode = SCENE_ALPHA_BLEND;
         if (draw_sheets(run, &opaque, 1, &test)) {
-            stability_compare(run, &test, &truth, "");
+            stability_compare(run, &test, &expected, "");
             picture_finish(&test);
         }
     }
-    picture_finish(&truth);
+    picture_finish(&expected);
 }
 
 static struct scene_material make_glowing(float strength)
@@ -272,12 +272,12 @@ static bool draw_textured(struct stability_run *run, float uv_offset, struct pic
 
 static void run_far_uv(struct stability_run *run)
 {
-    struct picture truth, test;
-    if (draw_textured(run, 0.0f, &truth) && draw_textured(run, 1e6f, &test)) {
-        stability_compare(run, &test, &truth, "");
+    struct picture expected, test;
+    if (draw_textured(run, 0.0f, &expected) && draw_textured(run, 1e6f, &test)) {
+        stability_compare(run, &test, &expected, "");
         picture_finish(&test);
     }
-    picture_finish(&truth);
+    picture_finish(&expected);
 }
 
 #define OF_BRIGHTEST "of the brightest"

@@ -17,7 +17,7 @@ static uint32_t next_random(uint64_t *state)
 }
 
 // Box and glowing ball somewhere on the floor.
-static void place_objects(struct stage *stage, uint64_t *state)
+static void add_objects(struct stage *stage, uint64_t *state)
 {
     static const float whole[3] = {1.0f, 1.0f, 1.0f};
     for (int i = 0; i < 2; i++) {
@@ -58,7 +58,7 @@ static bool draw_walk(struct stability_run *run, bool walks, struct picture *out
     bool done = !walks || stability_view_open(&view, run, stage.scene);
     uint64_t state = 5;
     for (int step = 0; step < WALK_STEPS && done; step++) {
-        place_objects(&stage, &state);
+        add_objects(&stage, &state);
         done = !walks || stability_view_draw(&view, &params) == RENDER_DRAWN;
     }
     if (!walks)
@@ -128,8 +128,8 @@ static void run_slide(struct stability_run *run)
     const float distance = 3.5f, wall = -2.0f;
     params.camera.fov_y_rad = 0.3f;
     float pixel_m = 2.0f * distance * tanf(0.5f * params.camera.fov_y_rad) / (float)params.height;
-    size_t most = (size_t)params.width * params.height * SLIDE_STEPS, count = 0;
-    double *changes = malloc(most * sizeof(*changes));
+    size_t maximum = (size_t)params.width * params.height * SLIDE_STEPS, count = 0;
+    double *changes = malloc(maximum * sizeof(*changes));
     struct display_params display = {.tonemap = TONEMAP_HABLE};
     bool done = changes && stability_view_open(&view, run, stage.scene);
     for (int step = 0; step <= SLIDE_STEPS && done; step++) {

@@ -6,58 +6,58 @@
 #include "renderer/scene/builtin/builtin.h"
 #include "tests/stability/stage.h"
 
-static bool draw_stage(struct stability_run *run, const struct stage_params *place,
+static bool draw_stage(struct stability_run *run, const struct stage_params *placement,
                        struct picture *out_picture)
 {
     struct stage stage;
     *out_picture = (struct picture){0};
-    return stage_create(run, place, &stage) && stage_draw(run, &stage, out_picture);
+    return stage_create(run, placement, &stage) && stage_draw(run, &stage, out_picture);
 }
 
 // Tells how far the stage looks from what it looks like in its usual place.
-static void compare_places(struct stability_run *run, const struct stage_params *places,
-                           uint32_t count, const char *const *names)
+static void compare_positions(struct stability_run *run, const struct stage_params *placements,
+                              uint32_t count, const char *const *names)
 {
-    struct picture truth;
-    if (!stage_draw_usual(run, &truth))
+    struct picture expected;
+    if (!stage_draw_usual(run, &expected))
         return;
-    stability_keep(run, &truth, "usual");
+    stability_keep(run, &expected, "usual");
     for (uint32_t i = 0; i < count; i++) {
         struct picture test;
-        if (!draw_stage(run, &places[i], &test))
+        if (!draw_stage(run, &placements[i], &test))
             break;
-        stability_measure(run, stability_flip(&test, &truth), "%s", names[i]);
+        stability_measure(run, stability_flip(&test, &expected), "%s", names[i]);
         stability_keep(run, &test, names[i]);
         picture_finish(&test);
     }
-    picture_finish(&truth);
+    picture_finish(&expected);
 }
 
 // `variant` is the power of ten.
 static void run_scaled(struct stability_run *run)
 {
-    const struct stage_params place = {.scale = pow(10.0, run->test->variant)};
-    compare_places(run, &place, 1, &(const char *){"scaled"});
+    const struct stage_params placement = {.scale = pow(10.0, run->test->variant)};
+    compare_positions(run, &placement, 1, &(const char *){"scaled"});
 }
 
 static void run_moved(struct stability_run *run)
 {
     double far = pow(10.0, run->test->variant);
-    const struct stage_params places[] = {{.offset = {far, 0.0, 0.0}},
-                                          {.offset = {far, -far, far}}};
+    const struct stage_params placements[] = {{.offset = {far, 0.0, 0.0}},
+                                              {.offset = {far, -far, far}}};
     static const char *const names[] = {"along-x", "along-all"};
-    compare_places(run, places, 2, names);
+    compare_positions(run, placements, 2, names);
 }
 
 // Voxels of the stage, looked at.
 static bool draw_voxels(struct stability_run *run, enum debug_view view, const double offset[3],
                         struct picture *out_picture)
 {
-    struct stage_params place = {0};
+    struct stage_params placement = {0};
     struct stage stage;
-    memcpy(place.offset, offset, sizeof(place.offset));
+    memcpy(placement.offset, offset, sizeof(placement.offset));
     *out_picture = (struct picture){0};
-    if (!stage_create(run, &place, &stage))
+    if (!stage_create(run, &placement, &stage))
         return false;
     struct frame_params params = stability_params(run);
     params.camera = stage.camera;
@@ -76,25 +76,25 @@ static void run_moved_voxels(struct stability_run *run)
                                                 {DEBUG_VIEW_VOXEL_RADIANCE, DEBUG_VIEW_COUNT}};
     for (int i = 0; i < 2 && views[run->test->variant][i] != DEBUG_VIEW_COUNT; i++) {
         enum debug_view view = views[run->test->variant][i];
-        struct picture truth = {0}, test = {0};
-        if (draw_voxels(run, view, here, &truth) && draw_voxels(run, view, there, &test)) {
+        struct picture expected = {0}, test = {0};
+        if (draw_voxels(run, view, here, &expected) && draw_voxels(run, view, there, &test)) {
             uint32_t pixel = 0;
-            double difference = stability_difference(&test, &truth, &pixel);
+            double difference = stability_difference(&test, &expected, &pixel);
             bool counts = run->test->variant == 0;
             stability_measure(
-                run, counts ? (double)stability_count_changed(&test, &truth) : difference,
+                run, counts ? (double)stability_count_changed(&test, &expected) : difference,
                 "%s, pixel %u, %u", debug_view_names[view], pixel % test.width, pixel / test.width);
         }
-        picture_finish(&truth);
+        picture_finish(&expected);
         picture_finish(&test);
     }
 }
 
 #define DEPTH_ALBEDO 0.5
 
-// A square of D x D m that faces the camera at D m, lit by a lamp D / 4 in front of it: how far its
-// pixels are from what the inverse square and the cosine give. The light depends on places that are
-// found from depth, and errs by about eight times their error. With `reach`, a speck far behind
+// A square of D x D m that faces the camera at D m, lit by a light D / 4 in front of it: how far
+// its pixels are from what the inverse square and the cosine give. The light depends on places that
+// are found from depth, and errs by about eight times their error. With `reach`, a speck far behind
 // makes the scene so large.
 static void measure_depth(struct stability_run *run, double distance, double reach)
 {
@@ -119,12 +119,12 @@ static void measure_depth(struct stability_run *run, double distance, double rea
     stage_add_triangles(&stage, front, 2, material, origin);
     if (reach > 0.0)
         stage_add_triangles(&stage, speck, 1, material, origin);
-    struct scene_light lamp;
-    scene_light_init(&lamp, SCENE_LIGHT_POINT, "lamp");
+    struct scene_light light;
+    scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
     double height = 0.25 * distance;
-    lamp.intensity = (float)(height * height);
-    lamp.casts_shadow = false;
-    scene_add_light(stage.scene, &lamp, (const float[3]){0.0f, 0.0f, (float)height},
+    light.intensity = (float)(height * height);
+    light.casts_shadow = false;
+    scene_add_light(stage.scene, &light, (const float[3]){0.0f, 0.0f, (float)height},
                     (const float[3]){0.0f, 0.0f, -1.0f});
     scene_update_world_transforms(stage.scene);
     struct frame_params params = stability_params(run);
@@ -210,7 +210,7 @@ static const struct stability_case cases[] = {
      .run = run_depth},
 };
 
-const struct stability_table stability_place = {
+const struct stability_table stability_scale = {
     .name = "place",
     .title = "Scale and place",
     .cases = cases,

@@ -1,5 +1,6 @@
-// Light stays in its room. Two closed rooms share a wall; a lamp lights one. What the camera in the
-// other sees, over what it sees in the lit one. A voxel is the longest edge of the bounds over 64.
+// Light stays in its room. Two closed rooms share a wall; a light lights one. What the camera in
+// the other sees, over what it sees in the lit one. A voxel is the longest edge of the bounds
+// over 64.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,7 +52,7 @@ static void add_inside(struct mesh_builder *builder, const float low[3], const f
 // Half the longest edge of the bounds of the turned cube, as the voxels see it.
 static float half_bounds(const struct rooms *rooms)
 {
-    float most = 0.0f;
+    float maximum = 0.0f;
     for (int axis = 0; axis < 3; axis++) {
         float sum = 0.0f;
         for (int edge = 0; edge < 3; edge++) {
@@ -60,9 +61,9 @@ static float half_bounds(const struct rooms *rooms)
             turned(rooms, unit, world);
             sum += fabsf(world[axis]);
         }
-        most = fmaxf(most, sum);
+        maximum = fmaxf(maximum, sum);
     }
-    return most;
+    return maximum;
 }
 
 static struct scene *create_rooms(const struct rooms *rooms)
@@ -81,12 +82,12 @@ static struct scene *create_rooms(const struct rooms *rooms)
     uint32_t node = builtin_add_mesh_node(scene, "rooms", mesh);
     if (node != SCENE_NONE)
         glm_quatv(scene->nodes[node].rotation, rooms->turn_rad, (float *)rooms->axis);
-    struct scene_light lamp;
-    scene_light_init(&lamp, SCENE_LIGHT_POINT, "lamp");
-    lamp.intensity = 10.0f;
-    float place[3];
-    turned(rooms, (const float[3]){-1.0f, 0.3f, 0.2f}, place);
-    scene_add_light(scene, &lamp, place, (const float[3]){0.0f, -1.0f, 0.0f});
+    struct scene_light light;
+    scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
+    light.intensity = 10.0f;
+    float position[3];
+    turned(rooms, (const float[3]){-1.0f, 0.3f, 0.2f}, position);
+    scene_add_light(scene, &light, position, (const float[3]){0.0f, -1.0f, 0.0f});
     scene_update_world_transforms(scene);
     return scene;
 }

@@ -79,15 +79,15 @@ static void desk_close(struct desk *desk)
     scene_destroy(&desk->scene);
 }
 
-static bool is_light_s_place(const struct parameter *parameter)
+static bool is_owned_placement(const struct parameter *parameter)
 {
     return parameter->group == GROUP_LIGHT &&
            (strcmp(parameter->name, "position") == 0 || strcmp(parameter->name, "direction") == 0);
 }
 
 // Whether the place of a node may have been found by way of that of a light.
-static bool is_place_of_light(const struct scene *scene, const struct parameter *parameter,
-                              uint32_t id)
+static bool is_placement_of_light(const struct scene *scene, const struct parameter *parameter,
+                                  uint32_t id)
 {
     return parameter->group == GROUP_NODE && parameter->type != PARAMETER_BOOL &&
            parameter->type != PARAMETER_STRING && scene->nodes[id].light != SCENE_NONE;
@@ -134,7 +134,7 @@ static const char *take_values(struct desk *desk, struct snapshot_of_values *out
                 continue;
             document_get(&desk->document, parameter, id, &value);
             bool of_light =
-                is_light_s_place(parameter) || is_place_of_light(desk->scene, parameter, id);
+                is_owned_placement(parameter) || is_placement_of_light(desk->scene, parameter, id);
             if (!is_finite_and_in_range(&value, of_light))
                 broken = "a value is not finite or beyond its range";
             if (of_light)
@@ -165,18 +165,18 @@ static void fill_value(struct random_numbers *random, const struct parameter *pa
 {
     *out_value = (struct parameter_value){.parameter = parameter};
     for (uint32_t i = 0; i < parameter_component_count(parameter->type); i++) {
-        double share = random_unit(random), low = parameter->min, high = parameter->max;
+        double fraction = random_unit(random), low = parameter->min, high = parameter->max;
         switch (random_below(random, 4)) {
         case 0:
-            share = 0.0;
+            fraction = 0.0;
             break;
         case 1:
-            share = 1.0;
+            fraction = 1.0;
             break;
         default:
             break;
         }
-        double number = low + (high - low) * share;
+        double number = low + (high - low) * fraction;
         if (parameter->type == PARAMETER_INT)
             number = round(number);
         if (parameter->type == PARAMETER_BOOL)

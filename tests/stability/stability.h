@@ -115,17 +115,17 @@ bool stability_draw(struct stability_run *run, struct scene *scene,
 void stability_keep(struct stability_run *run, const struct picture *picture, const char *name);
 
 // Mean LDR-FLIP between two pictures, both as the second's automatic exposure shows them.
-double stability_flip(const struct picture *test, const struct picture *truth);
+double stability_flip(const struct picture *test, const struct picture *expected);
 
 // Greatest difference of a channel, relative to the brightest of `truth`; `out_pixel` (or NULL) is
 // where. Infinite where a value is not finite.
-double stability_difference(const struct picture *test, const struct picture *truth,
+double stability_difference(const struct picture *test, const struct picture *expected,
                             uint32_t *out_pixel);
 
 // Measures stability_difference() and keeps both pictures. `what` ("" for nothing) tells which of
 // several comparisons it is.
 void stability_compare(struct stability_run *run, const struct picture *test,
-                       const struct picture *truth, const char *what);
+                       const struct picture *expected, const char *what);
 
 // Channels that differ in any bit.
 uint64_t stability_count_changed(const struct picture *a, const struct picture *b);

@@ -6,19 +6,19 @@
 #include "renderer/reference/flip.h"
 #include "tests/stability/stability.h"
 
-double stability_flip(const struct picture *test, const struct picture *truth)
+double stability_flip(const struct picture *test, const struct picture *expected)
 {
     struct picture shown[2] = {{0}, {0}};
-    size_t count = picture_pixel_count(truth);
+    size_t count = picture_pixel_count(expected);
     float *map = malloc(count * sizeof(float));
     double sum = 0.0;
-    struct display_params display = {.exposure = display_automatic_exposure(truth),
+    struct display_params display = {.exposure = display_automatic_exposure(expected),
                                      .tonemap = TONEMAP_HABLE};
     bool done = map && picture_init(&shown[0], test->width, test->height) &&
-                picture_init(&shown[1], truth->width, truth->height);
+                picture_init(&shown[1], expected->width, expected->height);
     if (done) {
         display_picture(&display, test, &shown[0]);
-        display_picture(&display, truth, &shown[1]);
+        display_picture(&display, expected, &shown[1]);
         done = flip_ldr(&shown[0], &shown[1], FLIP_PIXELS_PER_DEGREE, map);
     }
     for (size_t i = 0; i < count && done; i++)
@@ -29,15 +29,15 @@ double stability_flip(const struct picture *test, const struct picture *truth)
     return done ? sum / (double)count : INFINITY;
 }
 
-double stability_difference(const struct picture *test, const struct picture *truth,
+double stability_difference(const struct picture *test, const struct picture *expected,
                             uint32_t *out_pixel)
 {
     double brightest = 1e-30, worst = 0.0;
-    size_t count = 3 * picture_pixel_count(truth);
+    size_t count = 3 * picture_pixel_count(expected);
     for (size_t i = 0; i < count; i++)
-        brightest = fmax(brightest, (double)truth->rgb[i]);
+        brightest = fmax(brightest, (double)expected->rgb[i]);
     for (size_t i = 0; i < count; i++) {
-        double difference = fabs((double)test->rgb[i] - (double)truth->rgb[i]) / brightest;
+        double difference = fabs((double)test->rgb[i] - (double)expected->rgb[i]) / brightest;
         if (difference <= worst)
             continue;
         worst = difference;
@@ -50,13 +50,13 @@ double stability_difference(const struct picture *test, const struct picture *tr
 }
 
 void stability_compare(struct stability_run *run, const struct picture *test,
-                       const struct picture *truth, const char *what)
+                       const struct picture *expected, const char *what)
 {
     uint32_t pixel = 0;
-    double difference = stability_difference(test, truth, &pixel);
+    double difference = stability_difference(test, expected, &pixel);
     stability_measure(run, difference, "%s%spixel %u, %u", what, *what ? ", " : "",
                       pixel % test->width, pixel / test->width);
-    stability_keep(run, truth, "expected");
+    stability_keep(run, expected, "expected");
     stability_keep(run, test, "drawn");
 }
 

@@ -7,24 +7,25 @@
 #include "renderer/scene/builtin/builtin.h"
 #include "tests/stability/stability_internal.h"
 
-#define LAMP_CD 30.0f
+#define LIGHT_CD 30.0f
 
 static const float up[3] = {0.0f, 1.0f, 0.0f};
 
-void stage_place(const struct stage *stage, const float place[3], float out_world[3])
+void stage_to_world(const struct stage *stage, const float stage_position[3], float out_world[3])
 {
     for (int axis = 0; axis < 3; axis++)
-        out_world[axis] = (float)((double)place[axis] * stage->scale + stage->offset[axis]);
+        out_world[axis] =
+            (float)((double)stage_position[axis] * stage->scale + stage->offset[axis]);
 }
 
-static uint32_t place_mesh(struct stage *stage, uint32_t mesh, const float place[3])
+static uint32_t add_mesh_node(struct stage *stage, uint32_t mesh, const float stage_position[3])
 {
     uint32_t node =
         mesh == SCENE_NONE ? SCENE_NONE : builtin_add_mesh_node(stage->scene, "object", mesh);
     if (node == SCENE_NONE)
         return node;
     struct scene_node *it = &stage->scene->nodes[node];
-    stage_place(stage, place, it->translation);
+    stage_to_world(stage, stage_position, it->translation);
     for (int axis = 0; axis < 3; axis++)
         it->scale[axis] = (float)stage->scale;
     scene_update_world_transforms(stage->scene);
@@ -32,10 +33,10 @@ static uint32_t place_mesh(struct stage *stage, uint32_t mesh, const float place
 }
 
 uint32_t stage_add(struct stage *stage, struct mesh_builder *builder, uint32_t material,
-                   const float place[3])
+                   const float stage_position[3])
 {
-    return place_mesh(stage, mesh_builder_commit_mesh(builder, stage->scene, "object", material),
-                      place);
+    return add_mesh_node(stage, mesh_builder_commit_mesh(builder, stage->scene, "object", material),
+                         stage_position);
 }
 
 struct scene_vertex stage_vertex(float x, float y, float z)
@@ -47,7 +48,8 @@ struct scene_vertex stage_vertex(float x, float y, float z)
 }
 
 uint32_t stage_add_triangles(struct stage *stage, const struct scene_vertex *vertices,
-                             uint32_t triangle_count, uint32_t material, const float place[3])
+                             uint32_t triangle_count, uint32_t material,
+                             const float stage_position[3])
 {
     uint32_t mesh = scene_add_mesh(stage->scene, "triangles");
     uint32_t *indices = malloc((size_t)3 * triangle_count * sizeof(*indices));
@@ -57,7 +59,7 @@ uint32_t stage_add_triangles(struct stage *stage, const struct scene_vertex *ver
                 scene_add_primitive(stage->scene, vertices, 3 * triangle_count, indices,
                                     3 * triangle_count, material) != SCENE_NONE;
     free(indices);
-    return done ? place_mesh(stage, mesh, place) : SCENE_NONE;
+    return done ? add_mesh_node(stage, mesh, stage_position) : SCENE_NONE;
 }
 
 static void add_wall(struct mesh_builder *builder, const float corners[4][3])
@@ -116,7 +118,7 @@ bool stage_create(struct stability_run *run, const struct stage_params *params,
     struct stage *stage = out_stage;
     *stage = (struct stage){.scene = scene_create("stage"),
                             .scale = params->scale > 0.0 ? params->scale : 1.0,
-                            .lamp = SCENE_NONE};
+                            .light = SCENE_NONE};
     if (!stage->scene) {
         stability_fail(run, "out of memory");
         return false;
@@ -126,18 +128,18 @@ bool stage_create(struct stability_run *run, const struct stage_params *params,
     add_room(stage);
     if (!params->no_objects)
         add_objects(stage);
-    struct scene_light lamp;
-    scene_light_init(&lamp, SCENE_LIGHT_POINT, "lamp");
+    struct scene_light light;
+    scene_light_init(&light, SCENE_LIGHT_POINT, "lamp");
     float area = (float)(stage->scale * stage->scale);
-    lamp.intensity = (params->lamp_cd > 0.0f ? params->lamp_cd : LAMP_CD) * area;
+    light.intensity = (params->light_cd > 0.0f ? params->light_cd : LIGHT_CD) * area;
     float position[3];
-    stage_place(stage, (const float[3]){0.5f, 2.25f, 0.5f}, position);
-    if (!params->no_lamp)
-        stage->lamp =
-            scene_add_light(stage->scene, &lamp, position, (const float[3]){0.0f, -1.0f, 0.0f});
+    stage_to_world(stage, (const float[3]){0.5f, 2.25f, 0.5f}, position);
+    if (!params->no_light)
+        stage->light =
+            scene_add_light(stage->scene, &light, position, (const float[3]){0.0f, -1.0f, 0.0f});
     scene_update_world_transforms(stage->scene);
-    stage_place(stage, (const float[3]){0.0f, 1.5f, 1.75f}, stage->camera.eye);
-    stage_place(stage, (const float[3]){0.0f, 1.0f, -0.5f}, stage->camera.target);
+    stage_to_world(stage, (const float[3]){0.0f, 1.5f, 1.75f}, stage->camera.eye);
+    stage_to_world(stage, (const float[3]){0.0f, 1.0f, -0.5f}, stage->camera.target);
     memcpy(stage->camera.up, up, sizeof(up));
     stage->camera.fov_y_rad = 1.2f;
     return true;

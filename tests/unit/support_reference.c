@@ -55,7 +55,7 @@ uint32_t support_add_glass(struct scene *scene, float ior, float roughness, floa
     return add_material(scene, &glass);
 }
 
-static void place_mesh(struct scene *scene, uint32_t mesh)
+static void add_mesh_node(struct scene *scene, uint32_t mesh)
 {
     assert_int_not_equal(mesh, SCENE_NONE);
     assert_int_not_equal(builtin_add_mesh_node(scene, "part", mesh), SCENE_NONE);
@@ -66,7 +66,7 @@ void support_add_quad(struct scene *scene, uint32_t material, const float corner
 {
     uint32_t mesh = scene_add_mesh(scene, "quad");
     assert_true(builtin_add_quad(scene, corners, material));
-    place_mesh(scene, mesh);
+    add_mesh_node(scene, mesh);
 }
 
 void support_add_floor(struct scene *scene, uint32_t material, const float low[2],
@@ -85,7 +85,7 @@ void support_add_box(struct scene *scene, uint32_t material, const float low[3],
     struct mesh_builder builder;
     mesh_builder_init(&builder);
     mesh_builder_add_box(&builder, low, high, BOX_ALL);
-    place_mesh(scene, mesh_builder_commit_mesh(&builder, scene, "box", material));
+    add_mesh_node(scene, mesh_builder_commit_mesh(&builder, scene, "box", material));
 }
 
 struct reference_params support_narrow_view(const float eye[3], const float target[3])

@@ -133,7 +133,7 @@ static void *hammer(void *argument)
     return NULL;
 }
 
-static void test_threads_share_it(void **state)
+static void test_threads_use_one(void **state)
 {
     (void)state;
     pthread_t threads[4];
@@ -156,7 +156,7 @@ int main(void)
         cmocka_unit_test_setup(test_changed_file_or_other_index_misses, reset_cache),
         cmocka_unit_test_setup(test_least_recently_used_goes_first, reset_cache),
         cmocka_unit_test_setup(test_picture_outlives_the_cache, reset_cache),
-        cmocka_unit_test_setup(test_threads_share_it, reset_cache),
+        cmocka_unit_test_setup(test_threads_use_one, reset_cache),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     reset_cache(NULL);

@@ -20,12 +20,12 @@
 
 #define RAYS_ACROSS         96 // per camera
 #define RAYS_DOWN           54
-#define SAME_PLACE_M        1e-4
+#define SAME_POSITION_M     1e-4
 #define DOUBLE_CHECK_STRIDE 7 // of the rays, which are searched for a second surface
 
 static const struct expected {
     const char *name;
-    uint64_t least_triangles;
+    uint64_t min_triangles;
     uint32_t point_lights;
     uint32_t cameras;
 } expected_scenes[] = {
@@ -117,7 +117,7 @@ static void test_scenes_are_sound(void **state)
         support_check_scene(scene);
         check_triangles(scene);
         check_materials(scene);
-        assert_true(scene_triangle_count(scene) >= expected->least_triangles);
+        assert_true(scene_triangle_count(scene) >= expected->min_triangles);
         assert_true(scene->camera_count >= expected->cameras);
         uint32_t points = 0;
         for (uint32_t light = 0; light < scene->light_count; light++)
@@ -226,7 +226,7 @@ static void test_objects_of_one_kind(void **state)
         assert_true((clear->thickness_m > 0.0f) == (i != 0));
         assert_true(emission_of(material_of(emissive, objects[i])) > 0.1f);
     }
-    // Nothing else shines there, and nothing shines by itself but the lamp elsewhere.
+    // Nothing else shines there, and nothing shines by itself but the light elsewhere.
     assert_true(emission_of(material_of(emissive, "lamp")) == 0.0f);
     assert_true(emission_of(material_of(glass, "lamp")) > 10.0f);
     assert_int_equal(emissive->light_count, 0);
@@ -253,7 +253,7 @@ static void test_teapot_has_newells_proportions(void **state)
     scene_destroy(&scene);
 }
 
-struct sight {
+struct camera_ray {
     uint32_t rays, hits, backs, checked, doubles;
 };
 
@@ -281,7 +281,7 @@ static bool triangle_holds(double corners[3][3], const double point[3])
     if (area <= 0)
         return false;
     vector3_subtract(to_point, point, corners[0]);
-    if (fabs(vector3_dot(to_point, cross)) > SAME_PLACE_M * area)
+    if (fabs(vector3_dot(to_point, cross)) > SAME_POSITION_M * area)
         return false;
     for (int i = 0; i < 3; i++) {
         vector3_subtract(edge, corners[(i + 1) % 3], corners[i]);
@@ -302,8 +302,8 @@ static uint32_t count_at_hit(const struct scene *scene, const struct scene_node 
     const float *matrix = node->world_from_local;
     for (int axis = 0; axis < 3; axis++)
         for (int row = 0; row < 3; row++) {
-            double way = (double)hit->position[row] - matrix[12 + row];
-            point[axis] += matrix[4 * axis + row] * way;
+            double heading = (double)hit->position[row] - matrix[12 + row];
+            point[axis] += matrix[4 * axis + row] * heading;
             normal[axis] += (double)matrix[4 * axis + row] * hit->normal[row];
         }
     uint32_t count = 0;
@@ -335,7 +335,7 @@ static bool is_doubled(const struct scene *scene, const struct ray_hit *hit)
 }
 
 static void look(const struct scene *scene, const struct ray_scene *rays, uint32_t camera,
-                 struct sight *sight)
+                 struct camera_ray *camera_ray)
 {
     float eye[3], target[3], up[3];
     scene_get_camera_placement(scene, camera, eye, target, up);
@@ -348,14 +348,14 @@ static void look(const struct scene *scene, const struct ray_scene *rays, uint32
         for (int axis = 0; axis < 3; axis++)
             direction[axis] = (x * matrix[axis] + y * matrix[4 + axis] - matrix[8 + axis]) / length;
         struct ray_hit hit;
-        sight->rays++;
+        camera_ray->rays++;
         if (!ray_scene_intersect(rays, eye, direction, 1000, &hit))
             continue;
-        sight->hits++;
-        sight->backs += shows_back(scene, &hit);
+        camera_ray->hits++;
+        camera_ray->backs += shows_back(scene, &hit);
         if (i % DOUBLE_CHECK_STRIDE == 0) {
-            sight->checked++;
-            sight->doubles += is_doubled(scene, &hit);
+            camera_ray->checked++;
+            camera_ray->doubles += is_doubled(scene, &hit);
         }
     }
 }
@@ -368,15 +368,15 @@ static void test_cameras_see_fronts_alone(void **state)
         struct ray_scene *rays = ray_scene_create(scene);
         assert_non_null(rays);
         for (uint32_t camera = 0; camera < scene->camera_count; camera++) {
-            struct sight sight = {0};
-            look(scene, rays, camera, &sight);
+            struct camera_ray camera_ray = {0};
+            look(scene, rays, camera, &camera_ray);
             printf("%s, %s: %u of %u rays hit, %u backs, %u of %u doubled\n", scene->name,
-                   scene->cameras[camera].name, sight.hits, sight.rays, sight.backs, sight.doubles,
-                   sight.checked);
-            assert_true(sight.hits * 5 > sight.rays); // open scenes show much sky
+                   scene->cameras[camera].name, camera_ray.hits, camera_ray.rays, camera_ray.backs,
+                   camera_ray.doubles, camera_ray.checked);
+            assert_true(camera_ray.hits * 5 > camera_ray.rays); // open scenes show much sky
             // A ray may slip between two triangles of unequal division.
-            assert_true(sight.backs * 1000 <= sight.hits);
-            assert_int_equal(sight.doubles, 0);
+            assert_true(camera_ray.backs * 1000 <= camera_ray.hits);
+            assert_int_equal(camera_ray.doubles, 0);
         }
         ray_scene_destroy(&rays);
         scene_destroy(&scene);

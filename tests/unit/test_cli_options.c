@@ -11,7 +11,7 @@
 #include "server/cli.h"
 #include "server/cli_shot.h"
 
-struct places {
+struct values {
     struct cli_shot_options shot;
     struct cli_parser parser;
     const char *out;
@@ -23,7 +23,7 @@ struct places {
 #define MAX_WORDS 32
 
 // Parses a line whose words have one space between; the texts live as long as `line`.
-static bool parse(struct places *places, char *line, int *out_status)
+static bool parse(struct values *values, char *line, int *out_status)
 {
     char *words[MAX_WORDS + 1] = {"test"};
     int count = 1;
@@ -31,58 +31,58 @@ static bool parse(struct places *places, char *line, int *out_status)
         assert_true(count < MAX_WORDS);
         words[count++] = word;
     }
-    *places = (struct places){.shot.size = {640, 360}, .frames = 7};
-    places->parser = (struct cli_parser){.command = "test", .usage = "", .max_arguments = 2};
-    cli_take_shot(&places->parser, &places->shot);
-    cli_take_text(&places->parser, "out", &places->out);
-    cli_take_flag(&places->parser, "json", &places->json);
-    cli_take_count(&places->parser, "frames", 1, 100, &places->frames);
-    cli_take_number(&places->parser, "until-noise", 0.001, 1.0, &places->noise);
-    return cli_parse(&places->parser, count, words, out_status);
+    *values = (struct values){.shot.size = {640, 360}, .frames = 7};
+    values->parser = (struct cli_parser){.command = "test", .usage = "", .max_arguments = 2};
+    cli_take_shot(&values->parser, &values->shot);
+    cli_take_text(&values->parser, "out", &values->out);
+    cli_take_flag(&values->parser, "json", &values->json);
+    cli_take_count(&values->parser, "frames", 1, 100, &values->frames);
+    cli_take_number(&values->parser, "until-noise", 0.001, 1.0, &values->noise);
+    return cli_parse(&values->parser, count, words, out_status);
 }
 
 static void test_values_arrive(void **state)
 {
     (void)state;
-    struct places places;
+    struct values values;
     int status;
     char line[] = "a.glb --size 32x18 --eye 1,2.5,-3 --target 0,0,0 --fov-y-deg 45 --set a.b=1 "
                   "--set c= --gi grid --preset high --view direct --json --frames 100 b.glb "
                   "--out=x.png --until-noise 0.5 --gpu 1";
-    assert_true(parse(&places, line, &status));
-    assert_int_equal(places.parser.argument_count, 2);
-    assert_string_equal(places.parser.arguments[0], "a.glb");
-    assert_string_equal(places.parser.arguments[1], "b.glb");
-    assert_int_equal(places.shot.size.width, 32);
-    assert_int_equal(places.shot.size.height, 18);
-    assert_true(places.shot.camera.eye.given && places.shot.camera.target.given);
-    assert_false(places.shot.camera.up.given);
-    assert_true(places.shot.camera.eye.xyz[1] == 2.5f && places.shot.camera.eye.xyz[2] == -3.0f);
-    assert_true(places.shot.camera.fov_y_deg == 45.0);
-    assert_int_equal(places.shot.settings.sets.count, 2);
-    assert_string_equal(places.shot.settings.sets.values[1], "c=");
-    assert_int_equal(places.shot.settings.gi, GI_METHOD_GRID);
-    assert_int_equal(places.shot.settings.preset, QUALITY_HIGH);
-    assert_int_equal(places.shot.settings.view, DEBUG_VIEW_DIRECT);
-    assert_string_equal(places.shot.gpu, "1");
-    assert_string_equal(places.out, "x.png");
-    assert_true(places.json && places.frames == 100 && places.noise == 0.5);
+    assert_true(parse(&values, line, &status));
+    assert_int_equal(values.parser.argument_count, 2);
+    assert_string_equal(values.parser.arguments[0], "a.glb");
+    assert_string_equal(values.parser.arguments[1], "b.glb");
+    assert_int_equal(values.shot.size.width, 32);
+    assert_int_equal(values.shot.size.height, 18);
+    assert_true(values.shot.camera.eye.given && values.shot.camera.target.given);
+    assert_false(values.shot.camera.up.given);
+    assert_true(values.shot.camera.eye.xyz[1] == 2.5f && values.shot.camera.eye.xyz[2] == -3.0f);
+    assert_true(values.shot.camera.fov_y_deg == 45.0);
+    assert_int_equal(values.shot.settings.sets.count, 2);
+    assert_string_equal(values.shot.settings.sets.values[1], "c=");
+    assert_int_equal(values.shot.settings.gi, GI_METHOD_GRID);
+    assert_int_equal(values.shot.settings.preset, QUALITY_HIGH);
+    assert_int_equal(values.shot.settings.view, DEBUG_VIEW_DIRECT);
+    assert_string_equal(values.shot.gpu, "1");
+    assert_string_equal(values.out, "x.png");
+    assert_true(values.json && values.frames == 100 && values.noise == 0.5);
 }
 
 static void test_defaults_stay(void **state)
 {
     (void)state;
-    struct places places;
+    struct values values;
     int status;
     char line[] = "";
-    assert_true(parse(&places, line, &status));
-    assert_int_equal(places.parser.argument_count, 0);
-    assert_int_equal(places.shot.size.width, 640);
-    assert_int_equal(places.frames, 7);
-    assert_int_equal(places.shot.settings.gi, CLI_NO_CHOICE);
-    assert_string_equal(places.shot.gpu, "auto");
-    assert_null(places.out);
-    assert_false(places.json);
+    assert_true(parse(&values, line, &status));
+    assert_int_equal(values.parser.argument_count, 0);
+    assert_int_equal(values.shot.size.width, 640);
+    assert_int_equal(values.frames, 7);
+    assert_int_equal(values.shot.settings.gi, CLI_NO_CHOICE);
+    assert_string_equal(values.shot.gpu, "auto");
+    assert_null(values.out);
+    assert_false(values.json);
 }
 
 static void test_wrong_values_are_refused(void **state)
@@ -96,11 +96,11 @@ static void test_wrong_values_are_refused(void **state)
         "--view nothing", "--fov-y-deg 179.5", "--set novalue", "--until-noise nan",
     };
     for (size_t i = 0; i < sizeof(lines) / sizeof(lines[0]); i++) {
-        struct places places;
+        struct values values;
         char line[64];
         int status = 0;
         snprintf(line, sizeof(line), "%s", lines[i]);
-        if (parse(&places, line, &status) || status != CLI_EXIT_USAGE)
+        if (parse(&values, line, &status) || status != CLI_EXIT_USAGE)
             fail_msg("\"%s\" ends with status %d", lines[i], status);
     }
 }
@@ -108,10 +108,10 @@ static void test_wrong_values_are_refused(void **state)
 static void test_help_ends_without_error(void **state)
 {
     (void)state;
-    struct places places;
+    struct values values;
     int status = 9;
     char line[] = "--frames 3 --help";
-    assert_false(parse(&places, line, &status));
+    assert_false(parse(&values, line, &status));
     assert_int_equal(status, 0);
 }
 

@@ -59,8 +59,10 @@ static struct parameter_value sample(const struct parameter *parameter, int whic
     uint32_t count = parameter_component_count(parameter->type);
     for (uint32_t i = 0; i < count; i++) {
         // The eye must not lie in the target.
-        double share = (strcmp(parameter->name, "eye") == 0 ? 0.25 : 0.2) + 0.1 * i + 0.3 * which;
-        value.numbers[i] = parameter->min + share * (fmin(parameter->max, 50.0) - parameter->min);
+        double fraction =
+            (strcmp(parameter->name, "eye") == 0 ? 0.25 : 0.2) + 0.1 * i + 0.3 * which;
+        value.numbers[i] =
+            parameter->min + fraction * (fmin(parameter->max, 50.0) - parameter->min);
     }
     if (parameter->type == PARAMETER_INT)
         value.numbers[0] = fmin(parameter->max, 100.0) - 1.0 + which;
@@ -109,10 +111,10 @@ static void setting_one_changes_no_other(void **state)
         for (size_t p = 0; p < parameter_count(); p++) {
             const struct parameter *other = parameter_at(p);
             // Node 0 carries light 0, so that their places move together.
-            bool place = (other->group == GROUP_LIGHT || other->group == GROUP_NODE) &&
-                         other->type != PARAMETER_COLOR &&
-                         parameter_component_count(other->type) > 1;
-            if (other == changed || place)
+            bool is_placement = (other->group == GROUP_LIGHT || other->group == GROUP_NODE) &&
+                                other->type != PARAMETER_COLOR &&
+                                parameter_component_count(other->type) > 1;
+            if (other == changed || is_placement)
                 continue;
             document_get(&fixture->document, other, 0, &after);
             if (memcmp(&before[p], &after, sizeof(after)) != 0)

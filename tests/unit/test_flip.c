@@ -228,11 +228,11 @@ static void test_hdr_is_the_largest_of_its_exposures(void **state)
     struct flip_exposures exposures = flip_find_exposures(&radiance[1]);
     assert_true(exposures.count >= 2);
     for (uint32_t e = 0; e < exposures.count; e++) {
-        float share = (float)e / (float)(exposures.count - 1);
+        float fraction = (float)e / (float)(exposures.count - 1);
         // The curve gives linear values; the sRGB curve is undone by the comparison.
         struct display_params display = {
             .exposure = exp2f(exposures.start_stops +
-                              share * (exposures.stop_stops - exposures.start_stops)),
+                              fraction * (exposures.stop_stops - exposures.start_stops)),
             .tonemap = TONEMAP_ACES};
         for (int i = 0; i < 2; i++)
             display_picture(&display, &radiance[i], &shown[i]);

@@ -179,13 +179,13 @@ static void requests_become_commands(void **state)
     assert_string_equal(command->id.json, "");
     assert_true(command->revision == 9);
     assert_int_equal(parse(REQUEST("accuracy.start", "{}"), command, &error), 0);
-    assert_int_equal(command->ladder, LADDER_QUICK);
+    assert_int_equal(command->sweep, SWEEP_QUICK);
     assert_true(command->noise == 0.01 && command->seconds == 120.0);
     assert_int_equal(
         parse(REQUEST("accuracy.start", "{\"ladder\":\"full\",\"noise\":0.0005,\"seconds\":1}"),
               command, &error),
         0);
-    assert_int_equal(command->ladder, LADDER_FULL);
+    assert_int_equal(command->sweep, SWEEP_FULL);
     assert_true(command->noise == 0.0005 && command->seconds == 1.0);
     assert_int_equal(method_get_flags(METHOD_ACCURACY_START), 0);
     free(command);

@@ -34,16 +34,16 @@ static void stillness_brings_the_wanted_row(void **state)
     assert_int_equal(quality_controller_choose(&controller, request, START_US), QUALITY_FINAL);
     assert_true(quality_controller_next_us(&controller, request, START_US) == QUALITY_NEVER);
     quality_controller_move(&controller, START_US);
-    uint64_t still_us = START_US + QUALITY_STILL_US;
+    uint64_t rest_us = START_US + QUALITY_REST_US;
     assert_int_equal(quality_controller_choose(&controller, request, START_US),
                      QUALITY_INTERACTIVE);
-    assert_int_equal(quality_controller_choose(&controller, request, still_us - 1),
+    assert_int_equal(quality_controller_choose(&controller, request, rest_us - 1),
                      QUALITY_INTERACTIVE);
-    assert_true(quality_controller_next_us(&controller, request, START_US) == still_us);
-    assert_int_equal(quality_controller_choose(&controller, request, still_us), QUALITY_FINAL);
-    assert_true(quality_controller_next_us(&controller, request, still_us) == QUALITY_NEVER);
-    quality_controller_move(&controller, still_us + 5);
-    assert_int_equal(quality_controller_choose(&controller, request, still_us + 6),
+    assert_true(quality_controller_next_us(&controller, request, START_US) == rest_us);
+    assert_int_equal(quality_controller_choose(&controller, request, rest_us), QUALITY_FINAL);
+    assert_true(quality_controller_next_us(&controller, request, rest_us) == QUALITY_NEVER);
+    quality_controller_move(&controller, rest_us + 5);
+    assert_int_equal(quality_controller_choose(&controller, request, rest_us + 6),
                      QUALITY_INTERACTIVE);
 }
 
@@ -60,7 +60,7 @@ static void a_wanted_row_is_never_exceeded(void **state)
     take(&controller, QUALITY_INTERACTIVE, 500.0, 4);
     assert_int_equal(moving_row(&controller, &interactive), QUALITY_DRAFT);
     assert_int_equal(
-        quality_controller_choose(&controller, &interactive, START_US + QUALITY_STILL_US),
+        quality_controller_choose(&controller, &interactive, START_US + QUALITY_REST_US),
         QUALITY_INTERACTIVE);
 }
 

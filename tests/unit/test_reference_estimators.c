@@ -114,12 +114,12 @@ static void test_textured_emitter(void **state)
     scene->materials[floor].ior = 1.5f;
     scene->materials[floor].roughness = 0.4f;
     support_add_floor(scene, floor, (float[2]){-2, -2}, (float[2]){2, 2}, 0.0f, false);
-    uint32_t lamp = support_add_emissive(scene, 5.0f);
+    uint32_t light = support_add_emissive(scene, 5.0f);
     const uint8_t texels[4][4] = {
         {255, 60, 60, 255}, {30, 255, 30, 255}, {0, 0, 0, 255}, {90, 90, 255, 255}};
-    scene->materials[lamp].textures[SCENE_TEXTURE_EMISSIVE].image = add_picture(scene, texels);
-    scene->materials[lamp].double_sided = true;
-    support_add_floor(scene, lamp, (float[2]){-1, -1}, (float[2]){1, 1}, 1.0f, true);
+    scene->materials[light].textures[SCENE_TEXTURE_EMISSIVE].image = add_picture(scene, texels);
+    scene->materials[light].double_sided = true;
+    support_add_floor(scene, light, (float[2]){-1, -1}, (float[2]){1, 1}, 1.0f, true);
     struct reference_params params =
         support_narrow_view((float[3]){0.5f, -4, 3}, (float[3]){0, 0, 0.2f});
     params.camera.fov_y_rad = 0.7f;
@@ -134,10 +134,10 @@ static void test_environment_picture(void **state)
     struct scene *scene = support_scene_create();
     uint32_t floor = support_add_matte(scene, 0.6f);
     support_add_floor(scene, floor, (float[2]){-3, -3}, (float[2]){3, 3}, 0.0f, false);
-    uint32_t gloss = support_add_matte(scene, 0.3f);
-    scene->materials[gloss].ior = 1.5f;
-    scene->materials[gloss].roughness = 0.3f;
-    support_add_box(scene, gloss, (float[3]){-0.5f, -0.5f, 0}, (float[3]){0.5f, 0.5f, 1});
+    uint32_t specular = support_add_matte(scene, 0.3f);
+    scene->materials[specular].ior = 1.5f;
+    scene->materials[specular].roughness = 0.3f;
+    support_add_box(scene, specular, (float[3]){-0.5f, -0.5f, 0}, (float[3]){0.5f, 0.5f, 1});
     struct scene_environment sky = {.type = SCENE_ENVIRONMENT_EQUIRECT,
                                     .intensity = 2.0f,
                                     .rotation_rad = 0.7f,
@@ -156,7 +156,7 @@ static void test_environment_picture(void **state)
     scene_destroy(&scene);
 }
 
-// A lamp within frosted glass over a floor: all its light is refracted twice.
+// A light within frosted glass over a floor: all its light is refracted twice.
 static void test_frosted_glass(void **state)
 {
     (void)state;
@@ -168,8 +168,8 @@ static void test_frosted_glass(void **state)
     scene->materials[glass].attenuation_distance_m = 1.0f;
     scene->materials[glass].attenuation_color[0] = 0.5f;
     support_add_box(scene, glass, (float[3]){-0.6f, -0.6f, 0.3f}, (float[3]){0.6f, 0.6f, 0.6f});
-    uint32_t lamp = support_add_emissive(scene, 5.0f);
-    support_add_floor(scene, lamp, (float[2]){-0.7f, -0.7f}, (float[2]){0.7f, 0.7f}, 1.0f, true);
+    uint32_t light = support_add_emissive(scene, 5.0f);
+    support_add_floor(scene, light, (float[2]){-0.7f, -0.7f}, (float[2]){0.7f, 0.7f}, 1.0f, true);
     struct reference_params params =
         support_narrow_view((float[3]){1, -4, 2}, (float[3]){0, 0, 0.3f});
     params.camera.fov_y_rad = 0.5f;
@@ -193,8 +193,8 @@ static void test_panes(void **state)
     scene->materials[pane].base_color[0] = 0.4f;
     scene->materials[pane].transmission = 0.8f;
     support_add_floor(scene, pane, (float[2]){-0.2f, -1}, (float[2]){1, 1}, 0.6f, false);
-    uint32_t lamp = support_add_emissive(scene, 5.0f);
-    support_add_floor(scene, lamp, (float[2]){-0.7f, -0.7f}, (float[2]){0.7f, 0.7f}, 1.0f, true);
+    uint32_t light = support_add_emissive(scene, 5.0f);
+    support_add_floor(scene, light, (float[2]){-0.7f, -0.7f}, (float[2]){0.7f, 0.7f}, 1.0f, true);
     struct reference_params params =
         support_narrow_view((float[3]){1, -4, 2}, (float[3]){0, 0, 0.3f});
     params.camera.fov_y_rad = 0.6f;

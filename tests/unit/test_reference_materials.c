@@ -1,5 +1,5 @@
 // Proves by closed formulas what the reference path tracer makes of mirrors, refracting bodies,
-// thin panes, coverage and lamps with a size: all to 1 %.
+// thin panes, coverage and lights with a size: all to 1 %.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -37,8 +37,9 @@ static void test_mirror(void **state)
     metal.base_color[0] = 0.6f;
     uint32_t mirror = scene_add_material(scene, &metal);
     support_add_floor(scene, mirror, (float[2]){-5, -5}, (float[2]){5, 5}, 0.0f, false);
-    uint32_t lamp = support_add_emissive(scene, RADIANCE);
-    support_add_floor(scene, lamp, (float[2]){1.8f, -0.2f}, (float[2]){2.2f, 0.2f}, 2.0f, true);
+    uint32_t key_light = support_add_emissive(scene, RADIANCE);
+    support_add_floor(scene, key_light, (float[2]){1.8f, -0.2f}, (float[2]){2.2f, 0.2f}, 2.0f,
+                      true);
     // From (-3, 0, 3) by (0, 0, 0) to (2, 0, 2).
     struct reference_params params = support_narrow_view((float[3]){-3, 0, 3}, (float[3]){0, 0, 0});
     support_assert_ratio(mean_red(scene, &params, 64, REFERENCE_ALL_LAYERS),
@@ -63,8 +64,8 @@ static struct scene *slab_scene(float edge, float attenuation, struct reference_
     scene->materials[glass].attenuation_distance_m = 0.5f;
     scene->materials[glass].attenuation_color[0] = attenuation;
     support_add_box(scene, glass, (float[3]){-50, -50, 0}, (float[3]){50, 50, SLAB_M});
-    uint32_t lamp = support_add_emissive(scene, RADIANCE);
-    support_add_floor(scene, lamp, (float[2]){-50, -50}, (float[2]){edge, 50}, -(float)BELOW_M,
+    uint32_t key_light = support_add_emissive(scene, RADIANCE);
+    support_add_floor(scene, key_light, (float[2]){-50, -50}, (float[2]){edge, 50}, -(float)BELOW_M,
                       false);
     float away = 10.0f;
     *out_params = support_narrow_view(
@@ -86,17 +87,17 @@ static void test_refraction_by_snell(void **state)
     uint32_t straight = REFERENCE_LAYER(REFERENCE_EMISSION);
     double all = mean_red(scene, &params, 64, straight);
     scene_destroy(&scene);
-    double shares[3];
+    double weights[3];
     for (int i = 0; i < 3; i++) {
         scene = slab_scene((float)(edge + (i - 1) * 0.01 * displacement), 1.0f, &params);
         // Wider than the microfacets of smooth glass blur.
         params.camera.fov_y_rad = 0.004f;
-        shares[i] = mean_red(scene, &params, 256, straight) / all;
+        weights[i] = mean_red(scene, &params, 256, straight) / all;
         print_message("  edge %+d %% of the displacement off: %.3f of the view shows it\n", i - 1,
-                      shares[i]);
+                      weights[i]);
         scene_destroy(&scene);
     }
-    assert_true(shares[0] < 0.5 && shares[2] > 0.5 && fabs(shares[1] - 0.5) < 0.02);
+    assert_true(weights[0] < 0.5 && weights[2] > 0.5 && fabs(weights[1] - 0.5) < 0.02);
 }
 
 // What a slab lets through: Fresnel at both of its sides, tint once, Beer's law along the bent way;
@@ -180,8 +181,8 @@ static void test_thin_panes_tint(void **state)
     uint32_t pane = support_add_glass(scene, 1.5f, 0.3f, 0.0f);
     scene->materials[pane].base_color[0] = 0.5f;
     support_add_floor(scene, pane, (float[2]){-9, -9}, (float[2]){9, 9}, 1.0f, false);
-    uint32_t lamp = support_add_emissive(scene, RADIANCE);
-    support_add_floor(scene, lamp, (float[2]){-1, -1}, (float[2]){1, 1}, 0.0f, false);
+    uint32_t key_light = support_add_emissive(scene, RADIANCE);
+    support_add_floor(scene, key_light, (float[2]){-1, -1}, (float[2]){1, 1}, 0.0f, false);
     struct reference_params params = support_narrow_view((float[3]){0, 0, 3}, (float[3]){0});
     support_assert_ratio(mean_red(scene, &params, 256, REFERENCE_LAYER(REFERENCE_EMISSION)),
                          RADIANCE * 0.5 * 0.96, 0.01, "emitter through a pane");
@@ -215,8 +216,8 @@ static void test_coverage(void **state)
     scene->materials[sheet].alpha_mode = SCENE_ALPHA_BLEND;
     scene->materials[sheet].base_color[3] = 0.3f;
     support_add_floor(scene, sheet, (float[2]){-9, -9}, (float[2]){9, 9}, 1.0f, false);
-    uint32_t lamp = support_add_emissive(scene, 4.0f);
-    support_add_floor(scene, lamp, (float[2]){-1, -1}, (float[2]){1, 1}, 0.0f, false);
+    uint32_t key_light = support_add_emissive(scene, 4.0f);
+    support_add_floor(scene, key_light, (float[2]){-1, -1}, (float[2]){1, 1}, 0.0f, false);
     struct reference_params params = support_narrow_view((float[3]){0, 0, 3}, (float[3]){0});
     support_assert_ratio(mean_red(scene, &params, 256, REFERENCE_ALL_LAYERS),
                          0.3 * RADIANCE + 0.7 * 4.0, 0.01, "emitter behind a blended one");
@@ -241,9 +242,9 @@ static void test_coverage(void **state)
     scene_destroy(&scene);
 }
 
-// A lamp of a size gives what a point would to a surface that faces it, and half of that where an
+// A light of a size gives what a point would to a surface that faces it, and half of that where an
 // edge hides half of it.
-static void test_lamps_of_a_size(void **state)
+static void test_lights_of_a_size(void **state)
 {
     (void)state;
     for (int hidden = 0; hidden < 2; hidden++) {
@@ -268,18 +269,18 @@ static void test_lamps_of_a_size(void **state)
     }
 }
 
-// Blinn-Phong as the shaders have it, for a lamp and a viewer over a white surface.
+// Blinn-Phong as the shaders have it, for a light and a viewer over a white surface.
 static void test_blinn_phong(void **state)
 {
     (void)state;
     struct scene *scene = support_scene_create();
-    struct scene_material gloss;
-    scene_material_init(&gloss, "gloss");
-    gloss.shading = SCENE_SHADING_BLINN_PHONG;
-    gloss.metallic = 0.0f;
-    gloss.roughness = 0.5f;
-    gloss.ior = 0.0f; // reflects everything
-    uint32_t material = scene_add_material(scene, &gloss);
+    struct scene_material specular;
+    scene_material_init(&specular, "gloss");
+    specular.shading = SCENE_SHADING_BLINN_PHONG;
+    specular.metallic = 0.0f;
+    specular.roughness = 0.5f;
+    specular.ior = 0.0f; // reflects everything
+    uint32_t material = scene_add_material(scene, &specular);
     support_add_floor(scene, material, (float[2]){-1, -1}, (float[2]){1, 1}, 0.0f, false);
     struct scene_light light;
     scene_light_init(&light, SCENE_LIGHT_DIRECTIONAL, "sun");
@@ -330,9 +331,9 @@ static void test_caustic_of_a_point(void **state)
     scene_destroy(&scene);
 }
 
-// Many lamps over a floor give the sum of what each gives: those of a range by way of the grid that
-// tells which reach a point, very many without one by way of candidates.
-static void test_many_lamps_sum_up(void **state)
+// Many lights over a floor give the sum of what each gives: those of a range by way of the grid
+// that tells which reach a point, very many without one by way of candidates.
+static void test_many_lights_sum_up(void **state)
 {
     (void)state;
     static const struct {
@@ -378,10 +379,10 @@ int main(void)
         cmocka_unit_test(test_glass_vanishes_in_a_furnace),
         cmocka_unit_test(test_thin_panes_tint),
         cmocka_unit_test(test_coverage),
-        cmocka_unit_test(test_lamps_of_a_size),
+        cmocka_unit_test(test_lights_of_a_size),
         cmocka_unit_test(test_blinn_phong),
         cmocka_unit_test(test_caustic_of_a_point),
-        cmocka_unit_test(test_many_lamps_sum_up),
+        cmocka_unit_test(test_many_lights_sum_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

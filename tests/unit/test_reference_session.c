@@ -248,10 +248,11 @@ static void test_far_from_the_origin(void **state)
     const float far_m = 65536.0f; // a power of two: placements stay exact to 1/128 m
     for (uint32_t i = 0; i < fixture->scene->node_count; i++) {
         struct scene_node *node = &fixture->scene->nodes[i];
-        float place[3];
-        memcpy(place, node->translation, sizeof(place));
-        place[0] += node->parent == SCENE_NONE ? far_m : 0.0f;
-        scene_set_node_transform(fixture->scene, i, place, node->rotation, node->scale);
+        float translation_of_node[3];
+        memcpy(translation_of_node, node->translation, sizeof(translation_of_node));
+        translation_of_node[0] += node->parent == SCENE_NONE ? far_m : 0.0f;
+        scene_set_node_transform(fixture->scene, i, translation_of_node, node->rotation,
+                                 node->scale);
     }
     params.camera.eye[0] += far_m;
     params.camera.target[0] += far_m;

@@ -1,5 +1,5 @@
 // Proves that a copy of a scene stays as it was when the scene is edited and freed, shares its
-// pictures, and can itself be edited. How: the atrium, which has textures, lamps and many nodes.
+// pictures, and can itself be edited. How: the atrium, which has textures, lights and many nodes.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -60,13 +60,13 @@ static void test_copies_stay(void **state)
 static void test_copies_can_be_built_on(void **state)
 {
     (void)state;
-    static const float place[3] = {0.0f, 1.0f, 0.0f}, down[3] = {0.0f, -1.0f, 0.0f};
+    static const float origin[3] = {0.0f, 1.0f, 0.0f}, down[3] = {0.0f, -1.0f, 0.0f};
     struct scene *scene = load("cornell"), *copy = scene_copy(scene);
     struct scene_light light;
     assert_non_null(copy);
     scene_light_init(&light, SCENE_LIGHT_POINT, "added");
     for (uint32_t i = 0; i < 100; i++)
-        assert_int_equal(scene_add_light(copy, &light, place, down), scene->light_count + i);
+        assert_int_equal(scene_add_light(copy, &light, origin, down), scene->light_count + i);
     assert_int_equal(copy->light_count, scene->light_count + 100);
     assert_int_equal(copy->node_count, scene->node_count + 100);
     scene_destroy(&copy);

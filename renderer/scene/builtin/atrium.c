@@ -7,14 +7,14 @@
 
 #include "renderer/scene/builtin/builtin.h"
 
-uint32_t atrium_place(struct scene *scene, const char *name, uint32_t parent, uint32_t mesh,
-                      const float place[3], float turn_rad)
+uint32_t atrium_add_node(struct scene *scene, const char *name, uint32_t parent, uint32_t mesh,
+                         const float position[3], float turn_rad)
 {
     uint32_t node = scene_add_node(scene, name, parent);
     if (node == SCENE_NONE)
         return SCENE_NONE;
     scene->nodes[node].mesh = mesh;
-    glm_vec3_copy((float *)place, scene->nodes[node].translation);
+    glm_vec3_copy((float *)position, scene->nodes[node].translation);
     glm_quatv(scene->nodes[node].rotation, turn_rad, (vec3){0, 1, 0});
     return node;
 }
@@ -50,22 +50,22 @@ struct bay_part {
     float x, y, z;
 };
 
-static bool place_in_bay(struct scene *scene, uint32_t parent, const struct atrium_bay *bay,
-                         const struct bay_part *part)
+static bool add_in_bay(struct scene *scene, uint32_t parent, const struct atrium_bay *bay,
+                       const struct bay_part *part)
 {
     float xz[2];
     char name[64];
     atrium_bay_point(bay, part->x, part->z, xz);
     snprintf(name, sizeof(name), "%s %d.%d", part->name, bay->side + 1, bay->number + 1);
-    return atrium_place(scene, name, parent, part->mesh, (float[3]){xz[0], part->y, xz[1]},
-                        bay->turn_rad) != SCENE_NONE;
+    return atrium_add_node(scene, name, parent, part->mesh, (float[3]){xz[0], part->y, xz[1]},
+                           bay->turn_rad) != SCENE_NONE;
 }
 
-static bool place_parts(struct scene *scene, uint32_t parent, const struct atrium_bay *bay,
-                        const struct bay_part *parts, size_t count)
+static bool add_parts(struct scene *scene, uint32_t parent, const struct atrium_bay *bay,
+                      const struct bay_part *parts, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (!place_in_bay(scene, parent, bay, &parts[i]))
+        if (!add_in_bay(scene, parent, bay, &parts[i]))
             return false;
     return true;
 }
@@ -88,22 +88,22 @@ static bool add_bay(struct scene *scene, const struct atrium_parts *parts, int i
         {"balustrade", parts->balustrade, 0, upper + 0.02f, 0},
         {"coffers", parts->coffers, 0, ATRIUM_CEILING_M, 0},
     };
-    if (!place_parts(scene, groups[0], &bay, ground_parts, 4) ||
-        !place_parts(scene, groups[1], &bay, upper_parts, 3))
+    if (!add_parts(scene, groups[0], &bay, ground_parts, 4) ||
+        !add_parts(scene, groups[1], &bay, upper_parts, 3))
         return false;
     if (bay.number > 0) {
         const struct bay_part column = {"column", parts->ground_column, -half, ground, 0};
         const struct bay_part upper_column = {"upper column", parts->upper_column, -half, upper, 0};
-        if (!place_in_bay(scene, groups[0], &bay, &column) ||
-            !place_in_bay(scene, groups[1], &bay, &upper_column))
+        if (!add_in_bay(scene, groups[0], &bay, &column) ||
+            !add_in_bay(scene, groups[1], &bay, &upper_column))
             return false;
     }
     const struct bay_part doors[] = {
         {"door", parts->door, 0, ground, 0},
         {"upper door", parts->door, 0, upper, 0},
     };
-    return (bay.number % 2 == 0 || place_in_bay(scene, groups[0], &bay, &doors[0])) &&
-           (bay.number % 2 == 1 || place_in_bay(scene, groups[1], &bay, &doors[1]));
+    return (bay.number % 2 == 0 || add_in_bay(scene, groups[0], &bay, &doors[0])) &&
+           (bay.number % 2 == 1 || add_in_bay(scene, groups[1], &bay, &doors[1]));
 }
 
 // The pier at the right end of a side, the corner of the galleries behind it, and the rib and
@@ -123,8 +123,8 @@ static bool add_corner(struct scene *scene, const struct atrium_parts *parts, in
         {"upper corner pier", parts->upper_pier, half, ATRIUM_UPPER_FLOOR_M, 0},
         {"corner coffers", parts->coffers, ATRIUM_BAY_M, ATRIUM_CEILING_M, 0},
     };
-    return place_parts(scene, groups[0], &bay, ground_parts, 4) &&
-           place_parts(scene, groups[1], &bay, upper_parts, 2);
+    return add_parts(scene, groups[0], &bay, ground_parts, 4) &&
+           add_parts(scene, groups[1], &bay, upper_parts, 2);
 }
 
 static bool add_building(struct scene *scene)
@@ -164,8 +164,8 @@ static bool add_cloth(struct scene *scene, const struct atrium_furnishings *furn
         const struct bay_part banner = {"banner", furnishings->banners[(color + 1) % 3], 0, 0, 0};
         bool has_curtains = bay.side & 1 ? bay.number != 1 : bay.number % 3 != 2;
         bool has_banner = !(bay.side & 1) && bay.number % 2 == bay.side / 2;
-        if ((has_curtains && !place_in_bay(scene, group, &bay, &curtains)) ||
-            (has_banner && !place_in_bay(scene, group, &bay, &banner)))
+        if ((has_curtains && !add_in_bay(scene, group, &bay, &curtains)) ||
+            (has_banner && !add_in_bay(scene, group, &bay, &banner)))
             return false;
     }
     return true;
@@ -183,8 +183,8 @@ static bool add_plants(struct scene *scene, uint32_t mesh)
             atrium_bay_point(&bay, bay.number ? -1.5f : -0.55f, -1.0f, xz);
         else
             continue;
-        placed = atrium_place(scene, "potted plant", group, mesh, (float[3]){xz[0], 0.0f, xz[1]},
-                              1.7f * (float)i) != SCENE_NONE;
+        placed = atrium_add_node(scene, "potted plant", group, mesh, (float[3]){xz[0], 0.0f, xz[1]},
+                                 1.7f * (float)i) != SCENE_NONE;
     }
     return placed;
 }
@@ -214,8 +214,8 @@ static bool add_all_but_light(struct scene *scene)
     return atrium_add_materials(scene) && add_building(scene) &&
            atrium_make_furnishings(scene, &furnishings) && add_cloth(scene, &furnishings) &&
            add_plants(scene, furnishings.plant) &&
-           atrium_place(scene, "fountain", SCENE_NONE, furnishings.fountain, (float[3]){0, 0, 0},
-                        0.0f) != SCENE_NONE &&
+           atrium_add_node(scene, "fountain", SCENE_NONE, furnishings.fountain, (float[3]){0, 0, 0},
+                           0.0f) != SCENE_NONE &&
            add_cameras(scene);
 }
 

@@ -69,8 +69,8 @@ struct atrium_furnishings {
 bool atrium_make_furnishings(struct scene *scene, struct atrium_furnishings *out_furnishings);
 
 // A node that places a mesh; SCENE_NONE when memory ends.
-uint32_t atrium_place(struct scene *scene, const char *name, uint32_t parent, uint32_t mesh,
-                      const float place[3], float turn_rad);
+uint32_t atrium_add_node(struct scene *scene, const char *name, uint32_t parent, uint32_t mesh,
+                         const float position[3], float turn_rad);
 
 // Bays of the court's four sides, counted around; and their axes, where columns stand.
 #define ATRIUM_BAY_COUNT (2 * (ATRIUM_BAYS_X + ATRIUM_BAYS_Z))

@@ -48,7 +48,7 @@ static uint32_t make_curtains(struct scene *scene, uint32_t material)
                          12);
     for (int half = 0; half < 2; half++) {
         // The ties.
-        mesh_builder_place(&builder, half ? 1.04f : -1.04f, 1.39f, 0.0f, 0.0f);
+        mesh_builder_add_node(&builder, half ? 1.04f : -1.04f, 1.39f, 0.0f, 0.0f);
         mesh_builder_add_torus(&builder, 0.155f, 0.018f, 24, 8);
     }
     return mesh_builder_commit(&builder, scene, ATRIUM_BRASS) ? mesh : SCENE_NONE;

@@ -68,12 +68,12 @@ static bool make_lanterns(struct lantern_maker *maker)
 }
 
 // Where a lantern hangs; `turn_rad` turns +Z to its wall.
-struct lantern_place {
+struct lantern_placement {
     enum hanging hanging;
     float x, y, z, turn_rad;
 };
 
-static bool add_lantern(struct lantern_maker *maker, const struct lantern_place *place)
+static bool add_lantern(struct lantern_maker *maker, const struct lantern_placement *placement)
 {
     int color = (maker->count * 5 + maker->count / LANTERN_COLORS * 3) % LANTERN_COLORS;
     char name[64];
@@ -85,30 +85,32 @@ static bool add_lantern(struct lantern_maker *maker, const struct lantern_place 
     light.range_m = 2.0f + (float)(maker->count % 5) * 0.5f;
     light.casts_shadow = maker->count % 64 == 0;
     maker->count++;
-    return atrium_place(maker->scene, name, maker->group, maker->meshes[place->hanging][color],
-                        (float[3]){place->x, place->y, place->z}, place->turn_rad) != SCENE_NONE &&
+    return atrium_add_node(maker->scene, name, maker->group,
+                           maker->meshes[placement->hanging][color],
+                           (float[3]){placement->x, placement->y, placement->z},
+                           placement->turn_rad) != SCENE_NONE &&
            scene_add_light(maker->scene, &light,
-                           (float[3]){place->x, place->y - LIGHT_DROP_M, place->z},
+                           (float[3]){placement->x, placement->y - LIGHT_DROP_M, placement->z},
                            (float[3]){0, -1, 0}) != SCENE_NONE;
 }
 
 // In each bay on each floor: in the arch, in the middle of the gallery and two at the wall.
 static bool add_bay_lanterns(struct lantern_maker *maker, const struct atrium_bay *bay)
 {
-    static const struct lantern_place places[] = {
+    static const struct lantern_placement placements[] = {
         {HANG_FROM_ABOVE, 0, 3.72f, 0, 0},      {HANG_FROM_ABOVE, 0, 3.98f, 1.5f, 0},
         {HANG_AT_WALL, -1.12f, 2.4f, 2.75f, 0}, {HANG_AT_WALL, 1.12f, 2.4f, 2.75f, 0},
         {HANG_FROM_ABOVE, 0, 8.92f, 0, 0},      {HANG_FROM_ABOVE, 0, 9.16f, 1.55f, 0},
         {HANG_AT_WALL, -1.12f, 7.7f, 2.75f, 0}, {HANG_AT_WALL, 1.12f, 7.7f, 2.75f, 0},
     };
-    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
-        struct lantern_place place = places[i];
+    for (size_t i = 0; i < sizeof(placements) / sizeof(placements[0]); i++) {
+        struct lantern_placement placement = placements[i];
         float xz[2];
-        atrium_bay_point(bay, place.x, place.z, xz);
-        place.x = xz[0];
-        place.z = xz[1];
-        place.turn_rad = bay->turn_rad;
-        if (!add_lantern(maker, &place))
+        atrium_bay_point(bay, placement.x, placement.z, xz);
+        placement.x = xz[0];
+        placement.z = xz[1];
+        placement.turn_rad = bay->turn_rad;
+        if (!add_lantern(maker, &placement))
             return false;
     }
     return true;
@@ -123,17 +125,17 @@ static bool add_corner_lanterns(struct lantern_maker *maker)
         float x = ATRIUM_COURT_HALF_X + 1.5f + offsets[which][0];
         float z = ATRIUM_COURT_HALF_Z + 1.5f + offsets[which][1];
         bool right = corner & 1, front = corner & 2;
-        struct lantern_place place = {
+        struct lantern_placement placement = {
             .hanging = which ? HANG_AT_WALL : HANG_FROM_ABOVE,
             .x = right ? x : -x,
             .y = upper ? (which ? 7.7f : 9.16f) : (which ? 2.4f : 3.98f),
             .z = front ? z : -z,
         };
         if (which == 1)
-            place.turn_rad = right ? (float)M_PI_2 : -(float)M_PI_2;
+            placement.turn_rad = right ? (float)M_PI_2 : -(float)M_PI_2;
         else if (!front)
-            place.turn_rad = (float)M_PI;
-        if (!add_lantern(maker, &place))
+            placement.turn_rad = (float)M_PI;
+        if (!add_lantern(maker, &placement))
             return false;
     }
     return true;
@@ -161,16 +163,17 @@ static bool add_strings(struct lantern_maker *maker)
         }
         for (int i = 0; i < LANTERNS_A_STRING; i++) {
             float z = (float)i - 0.5f * (LANTERNS_A_STRING - 1);
-            struct lantern_place place = {HANG_ON_STRING, x, string_height(z) - 0.265f, z, 0};
-            if (!add_lantern(maker, &place)) {
+            struct lantern_placement placement = {HANG_ON_STRING, x, string_height(z) - 0.265f, z,
+                                                  0};
+            if (!add_lantern(maker, &placement)) {
                 mesh_builder_finish(&builder);
                 return false;
             }
         }
     }
     uint32_t mesh = mesh_builder_commit_mesh(&builder, maker->scene, "strings", ATRIUM_BRASS);
-    return mesh != SCENE_NONE && atrium_place(maker->scene, "strings", maker->group, mesh,
-                                              (float[3]){0, 0, 0}, 0.0f) != SCENE_NONE;
+    return mesh != SCENE_NONE && atrium_add_node(maker->scene, "strings", maker->group, mesh,
+                                                 (float[3]){0, 0, 0}, 0.0f) != SCENE_NONE;
 }
 
 bool atrium_add_lanterns(struct scene *scene)

@@ -67,7 +67,7 @@ static uint32_t make_vault(struct scene *scene)
     struct mesh_builder builder;
     mesh_builder_init(&builder);
     for (int quarter = 0; quarter < 4; quarter++) {
-        mesh_builder_place(&builder, 0.0f, 0.0f, HALF_BAY, (float)M_PI_2 * (float)quarter);
+        mesh_builder_add_node(&builder, 0.0f, 0.0f, HALF_BAY, (float)M_PI_2 * (float)quarter);
         struct surface_params params = {
             .position = vault_position,
             .normal = vault_normal,
@@ -86,7 +86,7 @@ static uint32_t make_rib(struct scene *scene)
 {
     struct mesh_builder builder;
     mesh_builder_init(&builder);
-    mesh_builder_place(&builder, 0.0f, 0.0f, HALF_BAY, (float)M_PI_2);
+    mesh_builder_add_node(&builder, 0.0f, 0.0f, HALF_BAY, (float)M_PI_2);
     mesh_builder_add_arch_band(&builder, (float[2]){1.33f, 1.28f}, (float[2]){1.57f, 1.52f}, 0.4f,
                                32);
     return mesh_builder_commit_mesh(&builder, scene, "vault rib", ATRIUM_STONE);
@@ -174,7 +174,7 @@ static uint32_t make_balustrade(struct scene *scene)
                                  (float[3]){1.3f, 0.93f, 0.15f}, 0.02f);
     for (int i = 0; i < balusters; i++) {
         float x = 2.3f * ((float)i / (float)(balusters - 1) - 0.5f);
-        mesh_builder_place(&builder, x, 0.0f, 0.0f, 0.0f);
+        mesh_builder_add_node(&builder, x, 0.0f, 0.0f, 0.0f);
         mesh_builder_add_lathe(&builder, baluster, COUNT(baluster), 12);
     }
     return mesh_builder_commit_mesh(&builder, scene, "balustrade", ATRIUM_STONE);

@@ -16,7 +16,7 @@ bool builtin_build_atrium_lights(struct scene *scene);
 bool builtin_build_furnace(struct scene *scene);
 bool builtin_build_material_grid(struct scene *scene);
 
-// The walls and the lamp of the Cornell box, for scenes set in it.
+// The walls and the light of the Cornell box, for scenes set in it.
 bool builtin_add_cornell_room(struct scene *scene);
 
 // A diffuse material: no specular reflection (IOR 1), the given linear reflectance.

@@ -9,9 +9,9 @@
 static const float white[3] = {0.725f, 0.71f, 0.68f};
 static const float red[3] = {0.63f, 0.065f, 0.05f};
 static const float green[3] = {0.14f, 0.45f, 0.091f};
-static const float lamp_radiance[3] = {17.0f, 12.0f, 4.0f}; // cd/m^2
+static const float light_radiance[3] = {17.0f, 12.0f, 4.0f}; // cd/m^2
 
-enum { FLOOR, CEILING, BACK_WALL, GREEN_WALL, RED_WALL, LAMP, ROOM_PARTS };
+enum { FLOOR, CEILING, BACK_WALL, GREEN_WALL, RED_WALL, LIGHT, ROOM_PARTS };
 
 // Published corners, millimetres, in the order that faces inwards once x and z are mirrored.
 static const struct {
@@ -20,7 +20,7 @@ static const struct {
     float corners[4][3];
 } room[ROOM_PARTS] = {
     [FLOOR] = {"floor", white, {{552.8f, 0, 0}, {0, 0, 0}, {0, 0, 559.2f}, {549.6f, 0, 559.2f}}},
-    [CEILING] = {"ceiling", white, {{0}}}, // cut around the lamp
+    [CEILING] = {"ceiling", white, {{0}}}, // cut around the light
     [BACK_WALL] =
         {"back wall",
          white,
@@ -31,9 +31,9 @@ static const struct {
     [RED_WALL] = {"left wall (red)",
                   red,
                   {{552.8f, 0, 0}, {549.6f, 0, 559.2f}, {556, 548.8f, 559.2f}, {556, 548.8f, 0}}},
-    [LAMP] = {"lamp",
-              NULL,
-              {{343, 548.8f, 227}, {343, 548.8f, 332}, {213, 548.8f, 332}, {213, 548.8f, 227}}},
+    [LIGHT] = {"lamp",
+               NULL,
+               {{343, 548.8f, 227}, {343, 548.8f, 332}, {213, 548.8f, 332}, {213, 548.8f, 227}}},
 };
 
 static const float short_block[5][4][3] = {
@@ -53,7 +53,7 @@ static const float tall_block[5][4][3] = {
 };
 
 // From published millimetres to metres, centred on the floor's middle.
-static void place(const float published[3], float out_position[3])
+static void to_metres(const float published[3], float out_position[3])
 {
     out_position[0] = (278.0f - published[0]) * 1e-3f;
     out_position[1] = published[1] * 1e-3f;
@@ -64,13 +64,13 @@ static bool add_published_quad(struct scene *scene, const float published[4][3],
 {
     float corners[4][3];
     for (int i = 0; i < 4; i++)
-        place(published[i], corners[i]);
+        to_metres(published[i], corners[i]);
     return builtin_add_quad(scene, corners, material);
 }
 
 static bool add_ceiling(struct scene *scene, uint32_t material)
 {
-    // Four strips around the lamp's rectangle, so that no two surfaces share a plane and a place.
+    // Four strips around the light's rectangle, so that no two surfaces share a plane and a place.
     const float y = 548.8f;
     const float outer[4][2] = {{556, 0}, {556, 559.2f}, {0, 559.2f}, {0, 0}};
     const float inner[4][2] = {{343, 227}, {343, 332}, {213, 332}, {213, 227}};
@@ -102,19 +102,19 @@ static bool add_block(struct scene *scene, const char *name, const float faces[5
 
 bool builtin_add_cornell_room(struct scene *scene)
 {
-    struct scene_material lamp;
-    scene_material_init(&lamp, "lamp");
-    lamp.base_color[0] = lamp.base_color[1] = lamp.base_color[2] = 0.78f;
-    lamp.metallic = 0.0f;
-    lamp.ior = 1.0f;
-    lamp.emissive_strength = lamp_radiance[0];
+    struct scene_material light;
+    scene_material_init(&light, "lamp");
+    light.base_color[0] = light.base_color[1] = light.base_color[2] = 0.78f;
+    light.metallic = 0.0f;
+    light.ior = 1.0f;
+    light.emissive_strength = light_radiance[0];
     for (int c = 0; c < 3; c++)
-        lamp.emissive[c] = lamp_radiance[c] / lamp_radiance[0];
+        light.emissive[c] = light_radiance[c] / light_radiance[0];
     for (int i = 0; i < ROOM_PARTS; i++) {
         uint32_t mesh = scene_add_mesh(scene, room[i].name);
         uint32_t material = room[i].reflectance
                                 ? builtin_add_matte(scene, room[i].name, room[i].reflectance)
-                                : scene_add_material(scene, &lamp);
+                                : scene_add_material(scene, &light);
         if (mesh == SCENE_NONE || material == SCENE_NONE)
             return false;
         bool added = i == CEILING ? add_ceiling(scene, material)
@@ -123,8 +123,8 @@ bool builtin_add_cornell_room(struct scene *scene)
             return false;
     }
     float eye[3], target[3];
-    place((const float[3]){278, 273, -800}, eye);
-    place((const float[3]){278, 273, 279.6f}, target);
+    to_metres((const float[3]){278, 273, -800}, eye);
+    to_metres((const float[3]){278, 273, 279.6f}, target);
     // 25 mm of film behind a lens of 35 mm.
     return scene_add_camera(scene, "published view", eye, target, (const float[3]){0, 1, 0},
                             0.68597f) != SCENE_NONE;

@@ -1,5 +1,5 @@
 // Four objects in the Cornell room, one each of polished metal, clear glass, glossy lacquer and
-// rough stone, and a dim warm lamp to move about; or all four of one kind, so that what goes wrong
+// rough stone, and a dim warm light to move about; or all four of one kind, so that what goes wrong
 // with one kind of light transport shows by itself.
 #include <math.h>
 
@@ -21,7 +21,7 @@ enum object_kind { KIND_OWN, KIND_DIFFUSE, KIND_GLOSSY, KIND_GLASS, KIND_EMISSIV
 struct object {
     const char *name;
     struct scene_material material;
-    float place[2]; // x and z of the shape's origin, metres; it stands on the floor
+    float origin[2]; // x and z of the shape's origin, metres; it stands on the floor
     float turn_rad;
     void (*add)(struct mesh_builder *builder);
 };
@@ -79,12 +79,12 @@ static void describe_objects(struct object objects[4])
 {
     struct object *teapot = &objects[0], *glass = &objects[1];
     struct object *torus = &objects[2], *stone = &objects[3];
-    *teapot = (struct object){"copper teapot", .place = {-0.1f, -0.11f}, .turn_rad = -0.45f,
+    *teapot = (struct object){"copper teapot", .origin = {-0.1f, -0.11f}, .turn_rad = -0.45f,
                               .add = add_teapot};
-    *glass = (struct object){"glass ball", .place = {0.125f, 0.115f}, .add = add_glass};
-    *torus = (struct object){"lacquered ring", .place = {-0.115f, 0.125f}, .add = add_torus};
-    *stone =
-        (struct object){"rough stone", .place = {0.15f, -0.1f}, .turn_rad = 0.4f, .add = add_stone};
+    *glass = (struct object){"glass ball", .origin = {0.125f, 0.115f}, .add = add_glass};
+    *torus = (struct object){"lacquered ring", .origin = {-0.115f, 0.125f}, .add = add_torus};
+    *stone = (struct object){"rough stone", .origin = {0.15f, -0.1f}, .turn_rad = 0.4f,
+                             .add = add_stone};
     for (int i = 0; i < 4; i++)
         scene_material_init(&objects[i].material, objects[i].name);
     teapot->material.double_sided = true; // spout and lid gap are open
@@ -129,7 +129,7 @@ static void dress(struct object *object, enum object_kind kind)
 }
 
 // The objects alone are to shine.
-static void put_out_lamp(struct scene *scene)
+static void put_out_light(struct scene *scene)
 {
     for (uint32_t i = 0; i < scene->material_count; i++)
         glm_vec3_zero(scene->materials[i].emissive);
@@ -137,11 +137,11 @@ static void put_out_lamp(struct scene *scene)
 
 static bool add_reading_light(struct scene *scene)
 {
-    struct scene_light lamp;
-    scene_light_init(&lamp, SCENE_LIGHT_POINT, "reading light");
-    lamp.intensity = 0.15f;
-    glm_vec3_copy((vec3){1.0f, 0.72f, 0.42f}, lamp.color);
-    return scene_add_light(scene, &lamp, (float[3]){0.02f, 0.3f, 0.16f}, (float[3]){0, -1, 0}) !=
+    struct scene_light light;
+    scene_light_init(&light, SCENE_LIGHT_POINT, "reading light");
+    light.intensity = 0.15f;
+    glm_vec3_copy((vec3){1.0f, 0.72f, 0.42f}, light.color);
+    return scene_add_light(scene, &light, (float[3]){0.02f, 0.3f, 0.16f}, (float[3]){0, -1, 0}) !=
            SCENE_NONE;
 }
 
@@ -157,10 +157,10 @@ static bool add_object(struct scene *scene, const struct object *object)
     uint32_t node = builtin_add_mesh_node(scene, object->name, mesh);
     if (node == SCENE_NONE)
         return false;
-    float *place = scene->nodes[node].translation;
-    place[0] = object->place[0];
-    place[1] = -scene->primitives[scene->meshes[mesh].primitive_first].bounds_min[1];
-    place[2] = object->place[1];
+    float *origin = scene->nodes[node].translation;
+    origin[0] = object->origin[0];
+    origin[1] = -scene->primitives[scene->meshes[mesh].primitive_first].bounds_min[1];
+    origin[2] = object->origin[1];
     glm_quatv(scene->nodes[node].rotation, object->turn_rad, (vec3){0, 1, 0});
     return true;
 }
@@ -172,7 +172,7 @@ static bool build(struct scene *scene, enum object_kind kind)
     if (!builtin_add_cornell_room(scene))
         return false;
     if (kind == KIND_EMISSIVE)
-        put_out_lamp(scene);
+        put_out_light(scene);
     for (int i = 0; i < 4; i++) {
         dress(&objects[i], kind);
         if (!add_object(scene, &objects[i]))

@@ -1,5 +1,5 @@
 // Spheres in rows of one material each, roughness rising from left to right, lit by a sun, a
-// rectangular lamp and a sky.
+// rectangular light and a sky.
 #include <stdio.h>
 
 #include "renderer/scene/builtin/builtin.h"
@@ -47,9 +47,9 @@ static bool add_spheres(struct scene *scene)
         uint32_t node = mesh == SCENE_NONE ? SCENE_NONE : builtin_add_mesh_node(scene, name, mesh);
         if (node == SCENE_NONE)
             return false;
-        float *place = scene->nodes[node].translation;
-        place[0] = ((float)column - 0.5f * (COLUMNS - 1)) * SPACING_M;
-        place[1] = SPHERE_RADIUS_M + 0.15f + (float)(ROWS - 1 - i / COLUMNS) * SPACING_M;
+        float *origin = scene->nodes[node].translation;
+        origin[0] = ((float)column - 0.5f * (COLUMNS - 1)) * SPACING_M;
+        origin[1] = SPHERE_RADIUS_M + 0.15f + (float)(ROWS - 1 - i / COLUMNS) * SPACING_M;
     }
     return true;
 }
@@ -90,18 +90,18 @@ static bool add_lighting(struct scene *scene)
     scene_light_init(&sun, SCENE_LIGHT_DIRECTIONAL, "sun");
     sun.intensity = 6.0f;
     glm_vec3_copy((vec3){1.0f, 0.96f, 0.9f}, sun.color);
-    struct scene_material lamp;
-    scene_material_init(&lamp, "lamp");
-    glm_vec4_zero(lamp.base_color);
-    lamp.base_color[3] = 1.0f;
-    lamp.metallic = 0.0f;
-    lamp.ior = 1.0f;
-    lamp.emissive_strength = 25.0f;
-    glm_vec3_one(lamp.emissive);
+    struct scene_material light;
+    scene_material_init(&light, "lamp");
+    glm_vec4_zero(light.base_color);
+    light.base_color[3] = 1.0f;
+    light.metallic = 0.0f;
+    light.ior = 1.0f;
+    light.emissive_strength = 25.0f;
+    glm_vec3_one(light.emissive);
     static const float corners[4][3] = {
         {-8.5f, 8.0f, 5.0f}, {-8.5f, 6.0f, 7.0f}, {-5.5f, 6.0f, 8.0f}, {-5.5f, 8.0f, 6.0f}};
     uint32_t mesh = scene_add_mesh(scene, "lamp");
-    uint32_t material = scene_add_material(scene, &lamp);
+    uint32_t material = scene_add_material(scene, &light);
     struct scene_environment sky = {
         .type = SCENE_ENVIRONMENT_GRADIENT,
         .intensity = 1.0f,

@@ -20,7 +20,7 @@ void mesh_builder_finish(struct mesh_builder *builder)
     mesh_builder_init(builder);
 }
 
-void mesh_builder_place(struct mesh_builder *builder, float x, float y, float z, float turn_rad)
+void mesh_builder_add_node(struct mesh_builder *builder, float x, float y, float z, float turn_rad)
 {
     glm_translate_make(builder->placement, (vec3){x, y, z});
     glm_rotate_y(builder->placement, turn_rad, builder->placement);
@@ -84,7 +84,7 @@ uint32_t mesh_builder_add_vertex(struct mesh_builder *builder, const float posit
     return mesh->vertex_count++;
 }
 
-static bool same_place(const struct triangle_mesh *mesh, uint32_t a, uint32_t b)
+static bool same_position(const struct triangle_mesh *mesh, uint32_t a, uint32_t b)
 {
     return glm_vec3_distance2(mesh->vertices[a].position, mesh->vertices[b].position) < 1e-14f;
 }
@@ -92,8 +92,8 @@ static bool same_place(const struct triangle_mesh *mesh, uint32_t a, uint32_t b)
 void mesh_builder_add_triangle(struct mesh_builder *builder, uint32_t a, uint32_t b, uint32_t c)
 {
     struct triangle_mesh *mesh = &builder->mesh;
-    if (builder->failed || same_place(mesh, a, b) || same_place(mesh, b, c) ||
-        same_place(mesh, c, a))
+    if (builder->failed || same_position(mesh, a, b) || same_position(mesh, b, c) ||
+        same_position(mesh, c, a))
         return;
     const uint32_t corners[3] = {a, b, c};
     for (int i = 0; i < 3; i++) {

@@ -23,7 +23,7 @@ void mesh_builder_init(struct mesh_builder *builder);
 void mesh_builder_finish(struct mesh_builder *builder);
 
 // Places what is added next: turned about +Y, then moved.
-void mesh_builder_place(struct mesh_builder *builder, float x, float y, float z, float turn_rad);
+void mesh_builder_add_node(struct mesh_builder *builder, float x, float y, float z, float turn_rad);
 
 // Computes tangents from the texture coordinates, appends everything collected as one primitive to
 // the scene's newest mesh and starts afresh. False when memory ended now or before.

@@ -1,7 +1,7 @@
 // Lists the tiles of GROUP_EDGE^2 pixels that hold a surface whose reflection deserves a cone, for
 // indirect dispatch. In: G-buffer. Out: dispatch arguments and tile numbers, in any order.
 #include "lib/gbuffer.glsl"
-#include "lib/gloss_rule.glsl"
+#include "lib/specular_classify.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -24,7 +24,7 @@ void main()
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (all(lessThan(pixel, frame.render_size))) {
         surface s = gbuffer_load(pixel);
-        if (s.shading < SHADE_UNLIT && deserves_cone(s))
+        if (s.shading < SHADE_UNLIT && needs_specular_trace(s))
             atomicOr(any_glossy, 1u);
     }
     barrier();

@@ -1,5 +1,5 @@
 // Asks for voxel faces of the irradiance cache.
-#include "lib/irradiance_read.glsl"
+#include "lib/cache_lookup.glsl"
 
 // Asks for the faces that cached_irradiance() reads.
 void request_faces(vec3 world, vec3 normal, uint frame_number)
@@ -17,7 +17,7 @@ void request_faces(vec3 world, vec3 normal, uint frame_number)
             for (uint axis = 0u; axis < 3u; axis++) {
                 float along = axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z;
                 uint words = cell_face(cell, 2u * axis + (along < 0.0 ? 1u : 0u));
-                if (words != VOXEL_NONE && along * along > LEAST_SHARE)
+                if (words != VOXEL_NONE && along * along > MIN_WEIGHT)
                     faces[words + FACE_REQUEST] = frame_number;
             }
         }

@@ -12,31 +12,31 @@
 #endif
 
 // Roughness whose lobe is about as wide as a cone, for the environment's filtered levels.
-const float GATHER_ROUGHNESS = 0.5;
+const float CONE_ROUGHNESS = 0.5;
 
-struct gathered {
+struct cone_sum {
     vec3 light; // irradiance / pi, in units of the volume's scale
-    float openness;
+    float ambient_visibility;
 };
 
 // The hemisphere's cones about a normal.
-struct gather_cones {
+struct hemisphere {
     mat3 axes;
     cone c; // but for the direction
 };
 
-gathered no_light()
+cone_sum no_cone_sum()
 {
-    gathered none;
+    cone_sum none;
     none.light = vec3(0.0);
-    none.openness = 0.0;
+    none.ambient_visibility = 0.0;
     return none;
 }
 
 // `position` is relative to the anchor; `turn` is cosine and sine of a turn about the normal.
-gather_cones begin_gather(vec3 position, vec3 normal, bool thin, vec2 turn)
+hemisphere begin_hemisphere(vec3 position, vec3 normal, bool thin, vec2 turn)
 {
-    gather_cones g;
+    hemisphere g;
     mat3 axes = frame_about(normal);
     g.axes = mat3(axes[0] * turn.x + axes[1] * turn.y, axes[1] * turn.x - axes[0] * turn.y, normal);
     float voxel = finest_voxel(position);
@@ -51,7 +51,7 @@ gather_cones begin_gather(vec3 position, vec3 normal, bool thin, vec2 turn)
 #if ENVIRONMENT_LIGHT
 vec3 escaped_light(vec3 direction, float transmittance)
 {
-    return environment_specular(direction, GATHER_ROUGHNESS) *
+    return environment_specular(direction, CONE_ROUGHNESS) *
            (transmittance / voxels.radiance_scale);
 }
 #endif
@@ -78,7 +78,7 @@ float front_of_hit(cone c, cone_light found)
 // Traces cone `i` and adds its share; `out_hit` remembers what counts most in it: distance in
 // voxels of the finest level (half), transmittance (8 bits), log2 of the diameter in those voxels
 // (8 bits, in sixteenths).
-void add_cone(gather_cones g, uint i, inout gathered sum, out uint out_hit)
+void add_cone(hemisphere g, uint i, inout cone_sum sum, out uint out_hit)
 {
     voxel_cone local = CONES[i];
     g.c.direction = g.axes * local.direction;
@@ -88,17 +88,17 @@ void add_cone(gather_cones g, uint i, inout gathered sum, out uint out_hit)
     light += escaped_light(g.c.direction, found.transmittance);
 #endif
     sum.light += local.weight * light;
-    sum.openness += local.weight * (1.0 - found.occlusion);
+    sum.ambient_visibility += local.weight * (1.0 - found.occlusion);
     found.hit_m = front_of_hit(g.c, found);
     float inverse = voxels.levels[0].inverse_voxel_edge;
     float diameter = clamp(log2(found.hit_diameter_m * inverse) * 16.0, 0.0, 255.0);
-    uint share = uint(found.transmittance * 255.0 + 0.5);
-    out_hit = (packHalf2x16(vec2(found.hit_m * inverse, 0.0)) & 0xffffu) | (share << 16) |
+    uint fraction = uint(found.transmittance * 255.0 + 0.5);
+    out_hit = (packHalf2x16(vec2(found.hit_m * inverse, 0.0)) & 0xffffu) | (fraction << 16) |
               (uint(diameter + 0.5) << 24);
 }
 
 // Adds the light of cone `i` as it is now where it hit when it was traced.
-void add_cone_at_hit(gather_cones g, uint i, uint word, inout gathered sum)
+void add_cone_at_hit(hemisphere g, uint i, uint word, inout cone_sum sum)
 {
     voxel_cone local = CONES[i];
     vec3 direction = g.axes * local.direction;

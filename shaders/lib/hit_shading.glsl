@@ -1,12 +1,12 @@
 // What a ray against the real geometry sees: surfaces, shaded where it meets them, or the
-// environment. LIT_HITS 1: surfaces are lit by each lamp; 0: as the voxels around them are.
+// environment. LIT_HITS 1: surfaces are lit by each light; 0: as the voxels around them are.
 #define CONE_SMOOTH  0
 #define CELLS_ACCESS readonly
 #include "lib/geometry.glsl"
 #include "lib/lighting.glsl"
 #include "lib/environment.glsl"
-#include "lib/irradiance_read.glsl"
-#include "lib/triangle_tree.glsl"
+#include "lib/cache_lookup.glsl"
+#include "lib/bvh.glsl"
 
 struct ray_light {
     vec3 radiance;    // cd/m^2
@@ -36,32 +36,33 @@ vec3 whole_reflectance(surface s)
     float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);
-    return s.base_color * ((1.0 - s.metallic) * mean_diffuse_share(s, n_v)) + f0 * scale_bias.x +
+    return s.base_color * ((1.0 - s.metallic) * mean_diffuse_fraction(s, n_v)) + f0 * scale_bias.x +
            mix(s.f90, 1.0, s.metallic) * scale_bias.y;
 }
 
 // What a surface sends back along the ray that met it. `spread` is the distance in m between rays
 // of neighbouring pixels there, over that to the hit.
-vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float spread,
-                  float least_roughness, vec2 pixel)
+vec3 shade_hit(bvh_hit hit, uint flags, vec3 origin, vec3 direction, float spread,
+               float min_roughness, vec2 pixel)
 {
-    uint at = hit.triangle * TREE_TRIANGLE_TEXELS;
-    uint id = tree_triangle_texel(at).w;
+    uint at = hit.triangle * BVH_TRIANGLE_TEXELS;
+    uint id = bvh_triangle_texel(at).w;
     mat3 axes = frame_about(direction);
-    layer through;
+    transparent_layer through;
     surface s = load_surface(
-        id, sight(origin + frame.bvh_origin, direction, axes[0] * spread, axes[1] * spread, pixel),
+        id,
+        camera_ray(origin + frame.bvh_origin, direction, axes[0] * spread, axes[1] * spread, pixel),
         through);
     // Highlights of smooth surfaces are met too seldom by rays that spread: their lobes are widened
     // to the ray's own (Kaplanyan and Dachsbacher 2013, "Path Space Regularization").
-    s.roughness = max(s.roughness, least_roughness);
-    vec3 sum = (flags & TREE_LIT_DIRECTLY) != 0u ? vec3(0.0) : s.emission;
+    s.roughness = max(s.roughness, min_roughness);
+    vec3 sum = (flags & BVH_LIT_DIRECTLY) != 0u ? vec3(0.0) : s.emission;
     if (s.shading >= SHADE_UNLIT) // a drawing, not a source of light
         return vec3(0.0);
 #if PUNCTUAL_LIGHTS || AREA_LIGHTS
     sum += direct_light(s, uvec2(0u));
 #endif
-#if FEEDBACK
+#if MULTI_BOUNCE
     vec3 light = cached_irradiance(s.position, s.geometric_normal).rgb;
     sum += whole_reflectance(s) * light * voxels.radiance_scale;
 #endif
@@ -71,24 +72,23 @@ vec3 hit_radiance(tree_hit hit, uint flags, vec3 origin, vec3 direction, float s
 // `origin` is relative to frame.bvh_origin, `direction` unit, `chance` uniform in [0, 1). `spread`:
 // distance in m between rays of neighbouring pixels where they start, and how much that grows per
 // m. `roughness` is of the lobe that the ray is from.
-ray_light light_along(vec3 origin, vec3 direction, float chance, vec2 spread, float roughness,
-                      vec2 pixel)
+ray_light trace_radiance(vec3 origin, vec3 direction, float chance, vec2 spread, float roughness,
+                         vec2 pixel)
 {
-    tree_hit hit = find_nearest(origin, direction, 1e30, chance);
+    bvh_hit hit = closest_hit(origin, direction, 1e30, chance);
     ray_light found;
     found.distance_m = hit.distance;
     found.radiance = vec3(0.0);
-    if (hit.triangle != TREE_LEAF) {
-        uint at = hit.triangle * TREE_TRIANGLE_TEXELS;
-        uvec4 edge_b = tree_triangle_texel(at + 1u);
-        uvec4 edge_c = tree_triangle_texel(at + 2u);
+    if (hit.triangle != BVH_LEAF) {
+        uint at = hit.triangle * BVH_TRIANGLE_TEXELS;
+        uvec4 edge_b = bvh_triangle_texel(at + 1u);
+        uvec4 edge_c = bvh_triangle_texel(at + 2u);
         vec3 face = cross(uintBitsToFloat(edge_b.xyz), uintBitsToFloat(edge_c.xyz));
-        if ((edge_c.w & TREE_ONE_SIDED) != 0u && dot(face, direction) > 0.0)
+        if ((edge_c.w & BVH_ONE_SIDED) != 0u && dot(face, direction) > 0.0)
             return found;
 #if LIT_HITS
-        found.radiance =
-            hit_radiance(hit, edge_c.w, origin, direction,
-                         spread.x / max(hit.distance, 1e-6) + spread.y, roughness, pixel);
+        found.radiance = shade_hit(hit, edge_c.w, origin, direction,
+                                   spread.x / max(hit.distance, 1e-6) + spread.y, roughness, pixel);
 #else
         vec3 world = origin + frame.bvh_origin + hit.distance * direction;
         found.radiance = voxel_light_at(world, direction) * voxels.radiance_scale;

@@ -1,11 +1,11 @@
 // Gathers what glossy surfaces mirror at pixels (every GATHER_STEP-th) by rays against the real
-// geometry, which is shaded where they meet it: LIT_HITS 1 by each lamp, 0 as the voxels are lit.
+// geometry, which is shaded where they meet it: LIT_HITS 1 by each light, 0 as the voxels are lit.
 // In the tiles that hold any gloss, one group each. In: tiles, G-buffer, tree of triangles,
 // materials, lights, shadow maps, irradiance. Out: sums over the frames in which nothing moved.
 #include "lib/gbuffer.glsl"
-#include "lib/gathered.glsl"
-#include "lib/gloss_rule.glsl"
-#include "lib/hit_light.glsl"
+#include "lib/ray_accumulation.glsl"
+#include "lib/specular_classify.glsl"
+#include "lib/hit_shading.glsl"
 #include "lib/ray_sequence.glsl"
 
 layout(local_size_x = GROUP_EDGE / GATHER_STEP, local_size_y = GROUP_EDGE / GATHER_STEP) in;
@@ -35,7 +35,7 @@ vec3 sample_visible_normal(vec3 view, float alpha, vec2 u)
 
 // What of a ray's light is reflected: Fresnel's part times the Smith terms that are left when
 // facets are drawn from those that the viewer sees, G2 / G1.
-float reflected_share(surface s, float v_h, float n_v, float n_l, float alpha)
+float reflected_fraction(surface s, float v_h, float n_v, float n_l, float alpha)
 {
     vec3 fresnel = specular_fresnel(s, v_h);
     vec2 squared = vec2(n_v, n_l) * vec2(n_v, n_l);
@@ -59,27 +59,29 @@ void main()
         if (any(greaterThanEqual(pixel, frame.render_size)))
             continue;
         s = gbuffer_load(pixel);
-        wanted = s.shading < SHADE_UNLIT && deserves_cone(s);
+        wanted = s.shading < SHADE_UNLIT && needs_specular_trace(s);
     }
     if (!wanted)
         return;
-    uvec2 place = first / uint(GATHER_STEP);
-    uint at = gathered_at(GATHERED_GLOSS, place);
-    vec4 sum = picture == 0u ? vec4(0.0) : gathered_light[at];
+    uvec2 texel = first / uint(GATHER_STEP);
+    uint at = accumulation_index(PLANE_SPECULAR, texel);
+    vec4 sum = picture == 0u ? vec4(0.0) : accumulated[at];
     float alpha = alpha_of(s);
     mat3 axes = frame_about(s.normal);
     vec3 view = s.view * axes;
     view = normalize(vec3(view.xy, max(view.z, 1e-3)));
     vec2 spread =
-        vec2(gathered_pixel_m(s), length(frame.ray_dx) * float(GATHER_STEP) + 0.25 * alpha);
-    vec3 u = ray_numbers(place, picture);
+        vec2(accumulation_spacing_m(s), length(frame.ray_dx) * float(GATHER_STEP) + 0.25 * alpha);
+    vec3 u = ray_numbers(texel, picture);
     vec3 facet = sample_visible_normal(view, alpha, u.xy);
     vec3 direction = axes * reflect(-view, facet);
     if (dot(direction, s.geometric_normal) > 0.0 && dot(direction, s.normal) > 0.0) {
-        float share = reflected_share(s, dot(view, facet), view.z, dot(direction, s.normal), alpha);
-        ray_light found = light_along(tree_origin(s.position, s.geometric_normal),
-                                      normalize(direction), u.z, spread, s.roughness, vec2(pixel));
-        sum += share * vec4(found.radiance, 1.0);
+        float fraction =
+            reflected_fraction(s, dot(view, facet), view.z, dot(direction, s.normal), alpha);
+        ray_light found =
+            trace_radiance(offset_ray_origin(s.position, s.geometric_normal), normalize(direction),
+                           u.z, spread, s.roughness, vec2(pixel));
+        sum += fraction * vec4(found.radiance, 1.0);
     }
-    gathered_light[at] = sum;
+    accumulated[at] = sum;
 }

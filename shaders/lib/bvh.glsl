@@ -2,30 +2,30 @@
 #include "lib/frame.glsl"
 #include "shared/bvh.h"
 
-layout(binding = UNIT_TREE_NODES) uniform usampler2D tree_nodes;
-layout(binding = UNIT_TREE_TRIANGLES) uniform usampler2D tree_triangles;
+layout(binding = UNIT_BVH_NODES) uniform usampler2D bvh_nodes;
+layout(binding = UNIT_BVH_TRIANGLES) uniform usampler2D bvh_triangles;
 
-struct tree_hit {
+struct bvh_hit {
     float distance; // in units of the direction's length
     uint triangle;
     vec2 weights; // of the second and third corner
 };
 
-const uint TREE_ROW_MASK = (1u << TREE_ROW_BITS) - 1u;
-const uint TREE_COUNT_MASK = (1u << TREE_COUNT_BITS) - 1u;
+const uint BVH_ROW_MASK = (1u << BVH_ROW_BITS) - 1u;
+const uint BVH_COUNT_MASK = (1u << BVH_COUNT_BITS) - 1u;
 
-uvec4 tree_node_texel(uint at)
+uvec4 bvh_node_texel(uint at)
 {
-    return texelFetch(tree_nodes, ivec2(at & TREE_ROW_MASK, at >> TREE_ROW_BITS), 0);
+    return texelFetch(bvh_nodes, ivec2(at & BVH_ROW_MASK, at >> BVH_ROW_BITS), 0);
 }
 
-uvec4 tree_triangle_texel(uint at)
+uvec4 bvh_triangle_texel(uint at)
 {
-    return texelFetch(tree_triangles, ivec2(at & TREE_ROW_MASK, at >> TREE_ROW_BITS), 0);
+    return texelFetch(bvh_triangles, ivec2(at & BVH_ROW_MASK, at >> BVH_ROW_BITS), 0);
 }
 
 // Where rays start that leave a surface: off it by what rounding may have moved it.
-vec3 tree_origin(vec3 world, vec3 geometric_normal)
+vec3 offset_ray_origin(vec3 world, vec3 geometric_normal)
 {
     float offset = frame.ray_min_offset_m + 4e-5 * length(world - frame.eye);
     return world - frame.bvh_origin + offset * geometric_normal;
@@ -44,13 +44,13 @@ vec2 cross_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse)
 
 // Moller and Trumbore 1997; both sides. Of masked triangles (opacity below 1) so many stop a ray as
 // are opaque on average: `chance` is uniform in [0, 1).
-void cross_triangle(uint number, vec3 origin, vec3 direction, float chance, inout tree_hit hit)
+void cross_triangle(uint number, vec3 origin, vec3 direction, float chance, inout bvh_hit hit)
 {
-    uint at = number * TREE_TRIANGLE_TEXELS;
-    uvec4 second = tree_triangle_texel(at + 1u);
-    vec3 corner = uintBitsToFloat(tree_triangle_texel(at).xyz);
+    uint at = number * BVH_TRIANGLE_TEXELS;
+    uvec4 second = bvh_triangle_texel(at + 1u);
+    vec3 corner = uintBitsToFloat(bvh_triangle_texel(at).xyz);
     vec3 edge_b = uintBitsToFloat(second.xyz);
-    vec3 edge_c = uintBitsToFloat(tree_triangle_texel(at + 2u).xyz);
+    vec3 edge_c = uintBitsToFloat(bvh_triangle_texel(at + 2u).xyz);
     vec3 across = cross(direction, edge_c);
     float determinant = dot(edge_b, across);
     float inverse = 1.0 / (determinant != 0.0 ? determinant : 1.0);
@@ -71,27 +71,27 @@ void cross_triangle(uint number, vec3 origin, vec3 direction, float chance, inou
     }
 }
 
-// The nearest triangle within `reach`; hit.triangle is TREE_LEAF where there is none. `origin` is
+// The nearest triangle within `reach`; hit.triangle is BVH_LEAF where there is none. `origin` is
 // relative to frame.bvh_origin.
-tree_hit find_nearest(vec3 origin, vec3 direction, float reach, float chance)
+bvh_hit closest_hit(vec3 origin, vec3 direction, float reach, float chance)
 {
-    tree_hit hit;
+    bvh_hit hit;
     hit.distance = reach;
-    hit.triangle = TREE_LEAF;
+    hit.triangle = BVH_LEAF;
     hit.weights = vec2(0.0);
     vec3 safe = mix(vec3(1e-20), abs(direction), greaterThan(abs(direction), vec3(1e-20)));
     vec3 inverse = mix(vec3(1.0), vec3(-1.0), lessThan(direction, vec3(0.0))) / safe;
-    uint stack[TREE_MAX_DEPTH];
+    uint stack[BVH_MAX_DEPTH];
     uint depth = 0u;
     uint current = 0u;
     for (;;) {
         // Down to a leaf, or to the end of the stack, an empty leaf.
-        while (current < TREE_LEAF) {
-            uint at = current * TREE_NODE_TEXELS;
-            uvec4 lower0 = tree_node_texel(at);
-            uvec4 upper0 = tree_node_texel(at + 1u);
-            uvec4 lower1 = tree_node_texel(at + 2u);
-            uvec4 upper1 = tree_node_texel(at + 3u);
+        while (current < BVH_LEAF) {
+            uint at = current * BVH_NODE_TEXELS;
+            uvec4 lower0 = bvh_node_texel(at);
+            uvec4 upper0 = bvh_node_texel(at + 1u);
+            uvec4 lower1 = bvh_node_texel(at + 2u);
+            uvec4 upper1 = bvh_node_texel(at + 3u);
             vec2 span0 = cross_box(uintBitsToFloat(lower0.xyz), uintBitsToFloat(upper0.xyz), origin,
                                    inverse);
             vec2 span1 = cross_box(uintBitsToFloat(lower1.xyz), uintBitsToFloat(upper1.xyz), origin,
@@ -105,10 +105,10 @@ tree_hit find_nearest(vec3 origin, vec3 direction, float reach, float chance)
                 stack[depth++] = farther;
             current = nearer;
             if (!met0 && !met1)
-                current = depth > 0u ? stack[--depth] : TREE_LEAF;
+                current = depth > 0u ? stack[--depth] : BVH_LEAF;
         }
-        uint number = (current & ~TREE_LEAF) >> TREE_COUNT_BITS;
-        uint end = number + (current & TREE_COUNT_MASK);
+        uint number = (current & ~BVH_LEAF) >> BVH_COUNT_BITS;
+        uint end = number + (current & BVH_COUNT_MASK);
         for (; number < end; number++)
             cross_triangle(number, origin, direction, chance, hit);
         if (depth == 0u)

@@ -11,7 +11,7 @@ float lobe_tangent(float roughness)
 }
 
 // Radiance in cd/m^2. `normal` lifts the start off the surface, which may be thin.
-vec3 trace_gloss(vec3 position_world, vec3 normal, bool thin, vec3 direction, float roughness)
+vec3 trace_specular(vec3 position_world, vec3 normal, bool thin, vec3 direction, float roughness)
 {
     vec3 origin = voxel_position(position_world);
     float voxel = finest_voxel(origin);

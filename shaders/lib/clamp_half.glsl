@@ -3,9 +3,9 @@
 
 const float LARGEST_HALF = 65504.0;
 
-vec3 cut_to_half(vec3 value)
+vec3 clamp_to_half(vec3 value)
 {
     if (!all(lessThanEqual(value, vec3(LARGEST_HALF)))) // NaN, too
-        atomicAdd(counters[COUNTER_CUT], 1u);
+        atomicAdd(counters[COUNTER_CLAMPED], 1u);
     return min(value, vec3(LARGEST_HALF));
 }

@@ -5,33 +5,33 @@
 
 layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
 {
-    vec4 gathered_light[];
+    vec4 accumulated[];
 };
 
-uvec2 gathered_size()
+uvec2 accumulation_size()
 {
     return (frame.render_size + uint(GATHER_STEP) - 1u) / uint(GATHER_STEP);
 }
 
 // Distance in m between neighbouring rays where they start.
-float gathered_pixel_m(surface s)
+float accumulation_spacing_m(surface s)
 {
     return length(s.position - frame.eye) * length(frame.ray_dx) * float(GATHER_STEP);
 }
 
 // Where a pixel's entry of a picture is.
-uint gathered_at(uint picture, uvec2 place)
+uint accumulation_index(uint picture, uvec2 texel)
 {
-    uvec2 size = gathered_size();
-    return (picture * size.y + place.y) * size.x + place.x;
+    uvec2 size = accumulation_size();
+    return (picture * size.y + texel.y) * size.x + texel.x;
 }
 
 #if RAY_SHADOWS
-// Behind the pictures: of each pixel, sums of the shares of lamps' light that arrive, and their
+// Behind the pictures: of each pixel, sums of the shares of lights' light that arrive, and their
 // number.
-uint shares_at(uvec2 pixel)
+uint visibility_index(uvec2 pixel)
 {
-    return gathered_at(uint(GATHERED_BEFORE_SHARES), uvec2(0)) + pixel.y * frame.render_size.x +
+    return accumulation_index(uint(VISIBILITY_PLANE), uvec2(0)) + pixel.y * frame.render_size.x +
            pixel.x;
 }
 #endif

@@ -1,9 +1,9 @@
 // Gathers irradiance at pixels (every GATHER_STEP-th) by a ray a picture against the real geometry.
 // In: G-buffer, tree of triangles, materials, lights, shadow maps, irradiance. Out: sums over the
 // frames in which nothing moved.
-#include "lib/gathered.glsl"
+#include "lib/ray_accumulation.glsl"
 #include "lib/gbuffer.glsl"
-#include "lib/hit_light.glsl"
+#include "lib/hit_shading.glsl"
 #include "lib/ray_sequence.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
@@ -15,24 +15,25 @@ const float RAY_ROUGHNESS = 0.6;
 
 void main()
 {
-    uvec2 place = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(place, gathered_size())))
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(texel, accumulation_size())))
         return;
-    surface s = gbuffer_load(place * uint(GATHER_STEP));
+    surface s = gbuffer_load(texel * uint(GATHER_STEP));
     if (s.shading >= SHADE_UNLIT)
         return;
     uint picture = uint(voxels.sample_count) - 1u;
-    vec3 u = ray_numbers(place, picture);
+    vec3 u = ray_numbers(texel, picture);
     vec2 disc = sqrt(u.x) * vec2(cos(2.0 * PI * u.y), sin(2.0 * PI * u.y));
     vec3 direction = frame_about(s.normal) * vec3(disc, sqrt(max(1.0 - u.x, 0.0)));
     vec4 light = vec4(0.0);
     // A normal map can turn a ray into the surface.
     if (dot(direction, s.geometric_normal) > 0.0) {
-        ray_light found = light_along(tree_origin(s.position, s.geometric_normal), direction, u.z,
-                                      vec2(0.0, RAY_SPREAD), RAY_ROUGHNESS, vec2(place));
+        ray_light found =
+            trace_radiance(offset_ray_origin(s.position, s.geometric_normal), direction, u.z,
+                           vec2(0.0, RAY_SPREAD), RAY_ROUGHNESS, vec2(texel));
         light = vec4(found.radiance / voxels.radiance_scale,
                      min(found.distance_m / voxels.ao_radius_m, 1.0));
     }
-    uint at = gathered_at(GATHERED_LIGHT, place);
-    gathered_light[at] = (picture == 0u ? vec4(0.0) : gathered_light[at]) + light;
+    uint at = accumulation_index(PLANE_DIFFUSE, texel);
+    accumulated[at] = (picture == 0u ? vec4(0.0) : accumulated[at]) + light;
 }

@@ -21,18 +21,18 @@ uint cache_level(vec3 position, out float out_room)
 
 // A surface takes from the faces of each axis that its normal has a share in, so that nothing jumps
 // where the dominant one changes.
-const float LEAST_SHARE = 0.1;
+const float MIN_WEIGHT = 0.1;
 
-// Adds irradiance / pi / scale and openness, trilinear between the faces of the eight voxels around
-// a place that look the way of `normal`. `position` is relative to the anchor.
+// Adds irradiance / pi / scale and ambient visibility, trilinear between the faces of the eight
+// voxels around a place that look the way of `normal`. `position` is relative to the anchor.
 void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout float weight)
 {
     vec3 at = position * voxels.levels[level].inverse_voxel_edge - 0.5;
     ivec3 low = ivec3(floor(at));
     vec3 t = at - vec3(low);
-    vec3 shares = normal * normal;
-    uint axes = (shares.x > LEAST_SHARE ? 1u : 0u) | (shares.y > LEAST_SHARE ? 2u : 0u) |
-                (shares.z > LEAST_SHARE ? 4u : 0u);
+    vec3 axis_weights = normal * normal;
+    uint axes = (axis_weights.x > MIN_WEIGHT ? 1u : 0u) | (axis_weights.y > MIN_WEIGHT ? 2u : 0u) |
+                (axis_weights.z > MIN_WEIGHT ? 4u : 0u);
     // As find_cell(), with what is the same for all eight read once.
     ivec3 origin = voxels.levels[level].origin;
     uint first_index = voxels.levels[level].first_index;
@@ -49,7 +49,7 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
             continue;
         cell = (cell - 1u) * CELL_WORDS + CELL_FACES;
         vec3 near = mix(1.0 - t, t, vec3(step));
-        float share = near.x * near.y * near.z + 1e-4;
+        float fraction = near.x * near.y * near.z + 1e-4;
         for (uint left = axes; left != 0u; left &= left - 1u) {
             uint axis = uint(findLSB(left));
             float along = axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z;
@@ -63,8 +63,8 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
             float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
             facing *= facing;
             vec4 light = face_shown_light(words);
-            // Nothing is known yet where not even openness is.
-            float w = light.a > 0.0 ? share * facing * facing : 0.0;
+            // Nothing is known yet where not even ambient visibility is.
+            float w = light.a > 0.0 ? fraction * facing * facing : 0.0;
             sum += w * light;
             weight += w;
         }
@@ -90,7 +90,7 @@ void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout 
     }
 }
 
-// Irradiance / pi / scale; a: openness. Zero where nothing is known yet.
+// Irradiance / pi / scale; a: ambient visibility. Zero where nothing is known yet.
 vec4 cached_irradiance(vec3 world, vec3 normal)
 {
     vec3 position = world - voxels.anchor;
@@ -108,10 +108,10 @@ vec4 cached_irradiance(vec3 world, vec3 normal)
         vec4 part = vec4(0.0);
         float part_weight = 0.0;
         add_cached(level + i, position, normal, part, part_weight);
-        float share = i == 0u ? own : 1.0 - own;
+        float fraction = i == 0u ? own : 1.0 - own;
         if (part_weight > 0.0) {
-            sum += part * (share / part_weight);
-            weight += share;
+            sum += part * (fraction / part_weight);
+            weight += fraction;
         }
     }
 #else

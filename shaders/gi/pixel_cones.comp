@@ -3,36 +3,36 @@
 // over the frames in which nothing moved.
 #define CONE_SMOOTH 1
 #define PIXEL_CONES 1
-#include "lib/gathered.glsl"
+#include "lib/ray_accumulation.glsl"
 #include "lib/gbuffer.glsl"
-#include "lib/gather.glsl"
+#include "lib/cone_hemisphere.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 void main()
 {
-    uvec2 place = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(place, gathered_size())))
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(texel, accumulation_size())))
         return;
-    surface s = gbuffer_load(place * uint(GATHER_STEP));
-    uint at = gathered_at(GATHERED_LIGHT, place);
+    surface s = gbuffer_load(texel * uint(GATHER_STEP));
+    uint at = accumulation_index(PLANE_DIFFUSE, texel);
     bool first = voxels.sample_count <= 1.0;
     if (s.shading >= SHADE_UNLIT)
         return;
     // Four turns in a square of 2x2 pixels that change places from frame to frame: after four
     // frames every pixel has seen the same, and then the next four follow.
-    uint order = (place.x & 1u) + 2u * (place.y & 1u);
+    uint order = (texel.x & 1u) + 2u * (texel.y & 1u);
     float frame_number = voxels.sample_count - 1.0;
     float turn =
         2.0 * PI *
         fract((float(order) + frame_number) * 0.25 + floor(frame_number * 0.25) * 0.61803399);
-    gather_cones g =
-        begin_gather(voxel_position(s.position), s.normal, s.thin, vec2(cos(turn), sin(turn)));
-    gathered found = no_light();
+    hemisphere g =
+        begin_hemisphere(voxel_position(s.position), s.normal, s.thin, vec2(cos(turn), sin(turn)));
+    cone_sum found = no_cone_sum();
     for (uint i = 0u; i < uint(CONE_MARCH.cone_count); i++) {
         uint hit;
         add_cone(g, i, found, hit);
     }
-    vec4 sum = first ? vec4(0.0) : gathered_light[at];
-    gathered_light[at] = sum + vec4(found.light, found.openness);
+    vec4 sum = first ? vec4(0.0) : accumulated[at];
+    accumulated[at] = sum + vec4(found.light, found.ambient_visibility);
 }

@@ -8,7 +8,7 @@ layout(std430, binding = BIND_VOXEL_COUNTERS) buffer voxel_counter_storage
     uint counters[];
 };
 
-#include "lib/voxel_radiate.glsl"
+#include "lib/voxel_store.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
@@ -37,7 +37,7 @@ void main()
                            unpackHalf2x16(faces[words + FACE_DIRECT + 1u]));
         uint bits = faces[words + FACE_ALBEDO];
         vec3 albedo = vec3(bits & 1023u, (bits >> 10) & 1023u, bits >> 20) / 1023.0;
-#if FEEDBACK
+#if MULTI_BOUNCE
         direct.rgb += albedo * face_light(words).rgb;
 #endif
         add_face(sums, normal, direct);

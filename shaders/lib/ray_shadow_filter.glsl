@@ -1,6 +1,6 @@
 // What gi/ray_shadows.comp has found for pixels, averaged over neighbours on the same surface.
 #include "lib/gbuffer.glsl"
-#include "lib/gathered.glsl"
+#include "lib/ray_accumulation.glsl"
 
 #if RAY_SHADOWS
 // Neighbours beyond the edge of a shadow differ by more than twice what so few rays have by chance,
@@ -8,24 +8,24 @@
 float same_shadow(vec4 a, vec4 b)
 {
     vec3 difference = abs(a.rgb / a.a - b.rgb / b.a);
-    float most = max(difference.r, max(difference.g, difference.b));
-    return exp(-most * most / (1.0 / a.a + 1.0 / b.a));
+    float maximum = max(difference.r, max(difference.g, difference.b));
+    return exp(-maximum * maximum / (1.0 / a.a + 1.0 / b.a));
 }
 
-// Share of the light of lamps that have a size that arrives at a pixel. Sums are of rays: a mean of
-// each neighbour counts as much as its rays are many.
-vec3 seen_share_of(surface s, uvec2 pixel)
+// Share of the light of lights that have a size that arrives at a pixel. Sums are of rays: a mean
+// of each neighbour counts as much as its rays are many.
+vec3 filtered_visibility(surface s, uvec2 pixel)
 {
-    vec4 own = gathered_light[shares_at(pixel)];
+    vec4 own = accumulated[visibility_index(pixel)];
     vec4 sum = own;
-    float pixel_m = gathered_pixel_m(s) / float(GATHER_STEP);
+    float pixel_m = accumulation_spacing_m(s) / float(GATHER_STEP);
     for (int y = -2; y <= 2; y++)
         for (int x = -2; x <= 2; x++) {
             ivec2 other = ivec2(pixel) + ivec2(x, y);
             if ((x == 0 && y == 0) || any(lessThan(other, ivec2(0))) ||
                 any(greaterThanEqual(other, ivec2(frame.render_size))))
                 continue;
-            vec4 value = gathered_light[shares_at(uvec2(other))];
+            vec4 value = accumulated[visibility_index(uvec2(other))];
             if (value.a == 0.0)
                 continue;
             float w = likeness(s, gbuffer_load(uvec2(other)), pixel_m) * window_weight(x, y);
