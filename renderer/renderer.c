@@ -8,14 +8,14 @@
 #include <unistd.h>
 
 #include "renderer/camera.h"
-#include "renderer/finite_check.h"
-#include "renderer/frame_block.h"
+#include "renderer/frame/finite_check.h"
+#include "renderer/frame/frame_block.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
-#include "renderer/resident/resident.h"
-#include "renderer/resident/triangle_tree.h"
-#include "renderer/view.h"
+#include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/gpu_scene/bvh.h"
+#include "renderer/frame/view.h"
 #include "voxcast_paths.h"
 
 struct renderer {

@@ -12,14 +12,14 @@
 
 #include "renderer/error.h"
 #include "renderer/log.h"
-#include "renderer/reference/display.h"
-#include "renderer/reference/heat_map.h"
-#include "renderer/reference/image_metrics.h"
-#include "renderer/reference/ray_rate.h"
-#include "renderer/reference/reference.h"
+#include "renderer/metrics/display.h"
+#include "renderer/metrics/heat_map.h"
+#include "renderer/metrics/image_metrics.h"
+#include "renderer/path_tracer/ray_bench.h"
+#include "renderer/path_tracer/reference.h"
 #include "renderer/scene/ray_scene.h"
 #include "renderer/scene/scene.h"
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 #include "renderer/settings.h"
 
 #define RENDERER_MAX_VIEWS      64u

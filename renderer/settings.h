@@ -14,7 +14,7 @@ enum gi_method {
     GI_METHOD_NONE,      // direct light only
     GI_METHOD_CLIPMAP,   // voxel cones through nested cubes around the camera
     GI_METHOD_GRID,      // voxel cones through one cube around the scene and its mip chain
-    GI_METHOD_REFERENCE, // paths, traced on the CPU: see renderer/reference/reference.h
+    GI_METHOD_REFERENCE, // paths, traced on the CPU: see renderer/path_tracer/reference.h
     GI_METHOD_COUNT
 };
 

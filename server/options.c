@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "protocol/limits.h"
-#include "server/frame_stream.h"
-#include "server/jpeg_workers.h"
+#include "server/stream/frame_stream.h"
+#include "server/stream/jpeg_workers.h"
 
 enum option_kind { OPTION_TEXT, OPTION_NUMBER, OPTION_LOG_LEVEL };
 

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "server/cli.h"
+#include "server/tool/cli.h"
 
 static const char usage[] =
     "usage: voxcast COMMAND [OPTIONS]\n"

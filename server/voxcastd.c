@@ -9,10 +9,10 @@
 #include <unistd.h>
 
 #include "protocol/limits.h"
-#include "server/accuracy_service.h"
-#include "server/network.h"
+#include "server/render/accuracy_service.h"
+#include "server/network/network.h"
 #include "server/options.h"
-#include "server/render_thread.h"
+#include "server/render/render_thread.h"
 #include "voxcast_paths.h"
 
 // Once told to stop, the program ends within this time, whatever a driver or a file keeps it at.

@@ -6,7 +6,7 @@
 
 #include "renderer/gi/cones.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 // Stored radiance of the brightest lit surface should lie about here, far from either end of what
 // half floats hold.

@@ -2,8 +2,8 @@
 #ifndef VOXCAST_RENDERER_GI_GI_H
 #define VOXCAST_RENDERER_GI_GI_H
 
-#include "renderer/effects.h"
-#include "renderer/gi/light.h"
+#include "renderer/frame/effects.h"
+#include "renderer/gi/light_schedule.h"
 
 // Clipmaps follow cameras; views beyond so many volumes share one.
 #define GI_MAX_SHARED_VOLUMES 6u

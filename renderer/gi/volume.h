@@ -8,7 +8,7 @@
 #include "renderer/gi/regions.h"
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/texture.h"
-#include "renderer/resident/resident.h"
+#include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/settings.h"
 
 struct voxel_volume_params {

@@ -3,7 +3,7 @@
 
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 uint32_t frame_debug_level(const struct frame *frame)
 {

@@ -3,7 +3,7 @@
 
 #include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *direct_light_skip_reason(const struct frame *frame)
 {

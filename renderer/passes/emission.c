@@ -1,6 +1,6 @@
 // Emitted radiance alone, for scenes without light.
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *emission_skip_reason(const struct frame *frame)
 {

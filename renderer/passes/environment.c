@@ -1,6 +1,6 @@
 // Environment as background and ambient light; the first pass to write radiance where it runs.
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *environment_skip_reason(const struct frame *frame)
 {

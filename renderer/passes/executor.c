@@ -3,8 +3,8 @@
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/timer.h"
 #include "renderer/passes/pass.h"
-#include "renderer/resident/resident.h"
-#include "renderer/view.h"
+#include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/frame/view.h"
 
 const struct pass *const all_passes[PASS_COUNT] = {
     &visibility_pass,       &gbuffer_pass,           &shadow_map_pass,       &voxelize_pass,

@@ -1,6 +1,6 @@
 // Automatic exposure from the histogram of luminances.
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *exposure_skip_reason(const struct frame *frame)
 {

@@ -1,6 +1,6 @@
 // Turns visibility ids into surface attributes.
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *gbuffer_skip_reason(const struct frame *frame)
 {

@@ -4,7 +4,7 @@
 #include "renderer/gi/gi.h"
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *indirect_diffuse_skip_reason(const struct frame *frame)
 {

@@ -2,7 +2,7 @@
 // take.
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 #define MOVING_SMOOTH_FRAMES 4u
 #define REQUEST_EDGE         4u // as in shaders/gi/cache_request.comp

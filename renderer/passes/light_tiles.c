@@ -1,6 +1,6 @@
 // Finds which lights of limited range reach which tile of the screen.
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *light_tiles_skip_reason(const struct frame *frame)
 {

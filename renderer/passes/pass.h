@@ -3,8 +3,8 @@
 #ifndef VOXCAST_RENDERER_PASSES_PASS_H
 #define VOXCAST_RENDERER_PASSES_PASS_H
 
-#include "renderer/effects.h"
-#include "renderer/gi/light.h"
+#include "renderer/frame/effects.h"
+#include "renderer/gi/light_schedule.h"
 #include "renderer/gpu/gpu.h"
 #include "renderer/renderer.h"
 

@@ -1,7 +1,7 @@
 // Shadows of lights that have a size, by rays from pixels; without them cones or the map tell.
 #include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *ray_shadows_skip_reason(const struct frame *frame)
 {

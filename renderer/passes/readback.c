@@ -1,6 +1,6 @@
 // Copies the output, and the exposure behind it, into the ring of buffers that the host can read.
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static bool readback_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {

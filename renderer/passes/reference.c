@@ -1,6 +1,6 @@
 // The reference's newest picture, uploaded in place of all that the real-time passes would make.
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *reference_skip_reason(const struct frame *frame)
 {

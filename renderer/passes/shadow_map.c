@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 // Each cascade is this much smaller than the next; the last is the map of the whole scene.
 #define CASCADE_RATIO 4.0f

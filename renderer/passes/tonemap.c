@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static bool tonemap_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {

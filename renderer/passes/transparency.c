@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *transparency_skip_reason(const struct frame *frame)
 {

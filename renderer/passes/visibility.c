@@ -1,6 +1,6 @@
 // Rasterises ids and depth of opaque and alpha-masked triangles.
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *visibility_skip_reason(const struct frame *frame)
 {

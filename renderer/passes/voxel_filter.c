@@ -1,7 +1,7 @@
 // Fills the mip levels of a grid, and the middle of each clip level, from the next finer level.
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *voxel_filter_skip_reason(const struct frame *frame)
 {

@@ -3,7 +3,7 @@
 
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 static const char *voxel_relight_skip_reason(const struct frame *frame)
 {

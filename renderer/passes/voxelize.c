@@ -1,7 +1,7 @@
 // Enters triangles into the voxels of regions that geometry or a clip level has come into.
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 // Groups along x of a dispatch of more groups than one dimension holds.
 #define ROW_GROUPS 4096u

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "renderer/scene/image.h"
+#include "renderer/image/image.h"
 
 #define SCENE_NONE UINT32_MAX
 

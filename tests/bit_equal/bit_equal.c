@@ -12,8 +12,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "renderer/reference/reference.h"
-#include "renderer/reference/picture.h"
+#include "renderer/path_tracer/reference.h"
+#include "renderer/metrics/picture.h"
 #include "renderer/renderer.h"
 
 #define WIDTH       48u

@@ -2,7 +2,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "renderer/scene/import_memory.h"
+#include "renderer/import/import_memory.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/scene/import_memory.h"
+#include "renderer/import/import_memory.h"
 
 #define HEADER "#mtl "
 

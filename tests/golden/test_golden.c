@@ -15,7 +15,7 @@
 #pragma GCC diagnostic pop
 
 #include "renderer/renderer.h"
-#include "renderer/scene/image_decode.h"
+#include "renderer/image/image_decode.h"
 #include "voxcast_paths.h"
 
 #define WIDTH                192u

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "renderer/scene/builtin/builtin.h"
-#include "renderer/scene/builtin/mesh_builder.h"
+#include "renderer/import/builtin/builtin.h"
+#include "renderer/import/builtin/mesh_builder.h"
 
 #define GRAY(value) ((const float[3]){(value), (value), (value)})
 

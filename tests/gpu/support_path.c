@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "renderer/reference/snapshot.h"
+#include "renderer/path_tracer/snapshot.h"
 
 bool path_trace(const struct path_params *params, struct path_picture *out_picture)
 {

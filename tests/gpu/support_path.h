@@ -2,7 +2,7 @@
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_PATH_H
 #define VOXCAST_TESTS_GPU_SUPPORT_PATH_H
 
-#include "renderer/reference/reference.h"
+#include "renderer/path_tracer/reference.h"
 #include "renderer/scene/scene.h"
 
 #define PATH_BOUNCES_UNLIMITED REFERENCE_UNLIMITED

@@ -5,7 +5,7 @@
 
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/view.h"
+#include "renderer/frame/view.h"
 
 // A context, a scene on the GPU and what a frame needs to run the voxel passes. One at a time.
 struct voxel_rig {

@@ -14,8 +14,8 @@
 #include <cjson/cJSON.h>
 #include <cmocka.h>
 
-#include "server/accuracy.h"
-#include "server/cli.h"
+#include "server/accuracy/accuracy.h"
+#include "server/tool/cli.h"
 
 static char folder[] = "/tmp/voxcast-accuracy-XXXXXX";
 
@@ -275,7 +275,7 @@ static void test_wrong_truths(void **state)
     name_file(path, "small.pfm");
     assert_true(picture_write_pfm(path, &picture, &error));
     picture_finish(&picture);
-    struct cli_shot shot = {.params = {.width = 16, .height = 9}};
+    struct shot shot = {.params = {.width = 16, .height = 9}};
     struct reference_image_params params = {.shot = &shot, .path = path};
     struct reference_image reference_image;
     assert_false(reference_image_get(&params, &reference_image, &error));

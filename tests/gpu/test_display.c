@@ -9,7 +9,10 @@
 
 #include <cmocka.h>
 
-#include "server/cli.h"
+#include "server/accuracy/converged_frames.h"
+#include "server/accuracy/picture_file.h"
+#include "server/accuracy/shot.h"
+#include "server/tool/cli.h"
 #include "support_gpu.h"
 
 #define WIDTH  64
@@ -23,9 +26,9 @@ static struct picture linear_picture(struct renderer *renderer, struct frame_par
     struct frame_pixels pixels;
     struct picture picture;
     params.output = FRAME_OUTPUT_LINEAR;
-    if (!cli_render_frame(renderer, view, &params, &pixels, &error))
+    if (!frames_render(renderer, view, &params, &pixels, &error))
         fail_msg("%s", error.message);
-    assert_true(cli_take_picture(&pixels, &picture));
+    assert_true(picture_from_pixels(&pixels, &picture));
     renderer_view_release(renderer, view);
     return picture;
 }
@@ -38,7 +41,7 @@ static void compare(struct renderer *renderer, const struct frame_params *given,
     struct error error = {""};
     struct frame_pixels pixels;
     params.output = FRAME_OUTPUT_RGBA8;
-    if (!cli_render_frame(renderer, view, &params, &pixels, &error))
+    if (!frames_render(renderer, view, &params, &pixels, &error))
         fail_msg("%s", error.message);
     const struct render_settings *settings = &params.settings;
     bool fixed = settings->exposure_mode == EXPOSURE_FIXED;
@@ -77,7 +80,7 @@ static void test_displayed_pictures_agree(void **state)
     struct frame_params params = {.width = WIDTH, .height = HEIGHT, .quality = QUALITY_INTERACTIVE};
     render_settings_init(&params.settings);
     params.settings.gi_method = GI_METHOD_NONE;
-    cli_default_camera(scene, (float)WIDTH / HEIGHT, &params.camera);
+    shot_default_camera(scene, (float)WIDTH / HEIGHT, &params.camera);
     struct picture radiance = linear_picture(renderer, params);
     compare(renderer, &params, &radiance);
     params.settings.exposure_ev = 1.5f;

@@ -8,7 +8,8 @@
 
 #include <cmocka.h>
 
-#include "server/cli_edit.h"
+#include "server/accuracy/edit_latency.h"
+#include "server/accuracy/shot.h"
 #include "support_gpu.h"
 
 #define EMITTER 5 // the light's material in builtin:cornell
@@ -18,7 +19,7 @@ static struct frame_params frame_of(const struct scene *scene, enum gi_method me
     struct frame_params params = {.width = 32, .height = 18, .quality = QUALITY_DRAFT};
     render_settings_init(&params.settings);
     params.settings.gi_method = method;
-    cli_default_camera(scene, 32.0f / 18.0f, &params.camera);
+    shot_default_camera(scene, 32.0f / 18.0f, &params.camera);
     return params;
 }
 
@@ -40,7 +41,7 @@ static void hide(struct scene *scene)
 
 static double frames(const struct edit_result *result, enum edit_stage stage)
 {
-    return cli_samples_quantile(&result->frames[stage], 1.0);
+    return samples_quantile(&result->frames[stage], 1.0);
 }
 
 static void test_direct_light_is_there_at_once(void **state)

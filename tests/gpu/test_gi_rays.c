@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 #include "support_gi.h"
 #include "support_gi_scenes.h"
 

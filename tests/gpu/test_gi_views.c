@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "renderer/scene/builtin/builtin.h"
+#include "renderer/import/builtin/builtin.h"
 #include "support_gi.h"
 #include "support_gi_scenes.h"
 

@@ -34,12 +34,12 @@ export const LAYERS = [
   },
   {
     folder: 'renderer/gi',
-    may: ['renderer/resident', 'renderer/gpu', 'shaders/shared', SETTINGS, 'renderer/effects.h'],
+    may: ['renderer/resident', 'renderer/gpu', 'shaders/shared', SETTINGS, 'renderer/frame/effects.h'],
     why: 'plans and keeps voxel light; passes draw it',
   },
   {
     folder: 'renderer/passes',
-    may: ['renderer/gi', 'renderer/resident', 'renderer/gpu', 'renderer/view.h', 'renderer/effects.h'],
+    may: ['renderer/gi', 'renderer/resident', 'renderer/gpu', 'renderer/frame/view.h', 'renderer/frame/effects.h'],
     why: 'a pass works on a view',
   },
   {
@@ -64,7 +64,7 @@ export const LAYERS = [
 
   {
     folder: 'server',
-    may: ['protocol', 'renderer/renderer.h', SETTINGS, 'renderer/log.h', 'renderer/scene/image.h', PATHS],
+    may: ['protocol', 'renderer/renderer.h', SETTINGS, 'renderer/log.h', 'renderer/image/image.h', PATHS],
     why: 'sees of the renderer its one header, and plain data',
   },
   {
@@ -92,7 +92,7 @@ export const UPWARD = [
     to: 'renderer/renderer.h',
     why: 'struct renderer_info and enum renderer_fault want a header below both',
   },
-  { from: 'renderer/gi/gi.c', to: 'renderer/view.h', why: 'struct frame and what a view has gathered are one plan' },
+  { from: 'renderer/gi/gi.c', to: 'renderer/frame/view.h', why: 'struct frame and what a view has gathered are one plan' },
   { from: 'renderer/gi/gi.c', to: 'renderer/passes/pass.h', why: 'struct frame stands in the header of passes' },
   { from: 'renderer/passes/pass.h', to: 'renderer/renderer.h', why: 'struct frame_params stands in renderer.h' },
 ];

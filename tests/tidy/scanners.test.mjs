@@ -213,9 +213,9 @@ describe('layers', () => {
 
   test('a call of GL or EGL outside of renderer/gpu is found', () => {
     const text = '// glFlush();\nvoid f(void)\n{\n    glFlush();\n    eglInitialize(0);\n    globe();\n}\n';
-    assert.deepEqual(findForeignGlCalls([file('renderer/view.c', text), file('renderer/gpu/gpu.c', text)]), [
-      'renderer/view.c:4: calls glFlush, which renderer/gpu/ alone may',
-      'renderer/view.c:5: calls eglInitialize, which renderer/gpu/ alone may',
+    assert.deepEqual(findForeignGlCalls([file('renderer/frame/view.c', text), file('renderer/gpu/gpu.c', text)]), [
+      'renderer/frame/view.c:4: calls glFlush, which renderer/gpu/ alone may',
+      'renderer/frame/view.c:5: calls eglInitialize, which renderer/gpu/ alone may',
     ]);
   });
 });

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/reference/snapshot.h"
-#include "renderer/scene/builtin/builtin.h"
-#include "renderer/scene/builtin/mesh_builder.h"
+#include "renderer/path_tracer/snapshot.h"
+#include "renderer/import/builtin/builtin.h"
+#include "renderer/import/builtin/mesh_builder.h"
 
 struct scene *support_scene_create(void)
 {

@@ -3,7 +3,7 @@
 #ifndef VOXCAST_TESTS_UNIT_SUPPORT_REFERENCE_H
 #define VOXCAST_TESTS_UNIT_SUPPORT_REFERENCE_H
 
-#include "renderer/reference/reference.h"
+#include "renderer/path_tracer/reference.h"
 #include "renderer/scene/scene.h"
 
 // An empty scene without an environment.

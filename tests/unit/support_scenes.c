@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "renderer/scene/triangle_mesh.h"
-#include "tests/stability/scene_check.h"
+#include "server/tool/stability/scene_check.h"
 
 const char *support_scene_path(const char *name)
 {

@@ -10,7 +10,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-#include "renderer/scene/asset_cache.h"
+#include "renderer/image/image_cache.h"
 
 #define EDGE        16u
 #define IMAGE_BYTES (EDGE * EDGE * 4u)

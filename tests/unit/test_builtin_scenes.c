@@ -14,7 +14,7 @@
 #include <time.h>
 
 #include "renderer/scene/ray_scene.h"
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 #include "renderer/scene/vector3.h"
 #include "support_scenes.h"
 

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "server/cli.h"
-#include "server/cli_shot.h"
+#include "server/tool/cli.h"
+#include "server/tool/shot_options.h"
 
 struct values {
     struct cli_shot_options shot;
@@ -123,7 +123,7 @@ static void test_camera_is_chosen(void **state)
     assert_non_null(scene);
     struct view_camera camera, first;
     struct cli_camera options = {.fov_y_deg = 90.0};
-    cli_default_camera(scene, 1.0f, &first);
+    shot_default_camera(scene, 1.0f, &first);
     assert_true(cli_camera_choose(&options, scene, 1.0f, &camera, &error));
     assert_true(camera.eye[2] == first.eye[2]);
     assert_float_equal(camera.fov_y_rad, 1.5707963f, 1e-6f);

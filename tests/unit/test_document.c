@@ -10,7 +10,8 @@
 
 #include <cmocka.h>
 
-#include "server/document.h"
+#include "server/document/document.h"
+#include "server/document/document_text.h"
 
 struct fixture {
     struct scene *scene;

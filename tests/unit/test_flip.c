@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "renderer/reference/display.h"
-#include "renderer/reference/flip.h"
+#include "renderer/metrics/display.h"
+#include "renderer/metrics/flip.h"
 
 #define WIDTH  23
 #define HEIGHT 17

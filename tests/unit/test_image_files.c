@@ -11,8 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "renderer/scene/image_decode.h"
-#include "renderer/scene/scene_load.h"
+#include "renderer/image/image_decode.h"
+#include "renderer/import/scene_load.h"
 
 static const char RADIANCE_HEADER[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
 

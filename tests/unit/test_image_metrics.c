@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-#include "renderer/reference/heat_map.h"
-#include "renderer/reference/image_metrics.h"
+#include "renderer/metrics/heat_map.h"
+#include "renderer/metrics/image_metrics.h"
 
 // Radiance is shown as it is.
 static const struct display_params plain = {

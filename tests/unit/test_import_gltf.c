@@ -14,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/scene/import_memory.h"
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/import_memory.h"
+#include "renderer/import/scene_load.h"
 #include "support_scenes.h"
 
 #define TOLERANCE 1e-5f

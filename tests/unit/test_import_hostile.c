@@ -16,9 +16,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "renderer/scene/asset_path.h"
+#include "renderer/image/file_access.h"
 #include "renderer/scene/ray_scene.h"
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 #include "support_scenes.h"
 
 #define TIME_LIMIT_S    10

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "server/quality_controller.h"
+#include "server/render/quality_controller.h"
 
 #define START_US 1000000u
 

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "renderer/scene/ray_scene.h"
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 #include "support_scenes.h"
 
 #define TOLERANCE 1e-5f

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 #include "support_reference.h"
 
 #define SEEDS 6

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "renderer/reference/sampler_batch.h"
+#include "renderer/path_tracer/sampler_batch.h"
 
 #define LOG2_POINTS 8u
 #define POINTS      (1u << LOG2_POINTS)

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 #include "support_reference.h"
 
 #define WIDTH  41u

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "renderer/scene/scene.h"
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 
 static struct scene *load(const char *name)
 {

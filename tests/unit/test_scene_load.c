@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "renderer/scene/scene_load.h"
+#include "renderer/import/scene_load.h"
 
 static char folder[] = "/tmp/voxcast-load-XXXXXX";
 

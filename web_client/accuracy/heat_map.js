@@ -1,6 +1,6 @@
 import { srgbFromLinear } from '../math/color.js';
 
-// As renderer/reference/heat_map.c has them: lightness grows evenly, hue turns from violet by red to yellow.
+// As renderer/metrics/heat_map.c has them: lightness grows evenly, hue turns from violet by red to yellow.
 const HIGHEST_LIGHTNESS = 0.97;
 const LARGEST_CHROMA = 0.22;
 const FIRST_HUE_RAD = (290 * Math.PI) / 180;

@@ -1,0 +1,33 @@
+// Indirect draws of the triangles that a camera or light can see, grouped by kind and culling.
+#ifndef VOXCAST_RENDERER_FRAME_DRAW_LIST_H
+#define VOXCAST_RENDERER_FRAME_DRAW_LIST_H
+
+#include "renderer/gpu_scene/gpu_scene.h"
+
+struct draw_list {
+    struct gpu_buffer *commands;
+    struct gpu_buffer *records;
+    struct gpu_draw *scratch_commands;
+    struct gpu_draw_record *scratch_records;
+    uint32_t capacity;
+    uint32_t first[DRAW_GROUP_COUNT];
+    uint32_t count[DRAW_GROUP_COUNT];
+};
+
+// Makes room for draws of `resident`. False when memory ends.
+bool draw_list_reserve(struct draw_list *list, const struct gpu_scene *gpu_scene);
+void draw_list_finish(struct draw_list *list);
+
+// Fills the list with the clusters of visible instances that reach into the clip volume
+// -w <= x, y <= w, 0 <= z <= w. With an `eye` (world), leaves out clusters that only show it the
+// backs of single-sided triangles. Cost: linear in clusters near the volume.
+void draw_list_fill(struct draw_list *list, const struct gpu_scene *gpu_scene,
+                    const mat4 clip_from_world, const float *eye);
+
+// Draws the groups of one kind. `cull_by_group` false draws both sides of all triangles.
+void draw_list_draw(const struct draw_list *list, const struct gpu_scene *gpu_scene,
+                    const struct gpu_program *program, enum draw_kind kind, bool cull_by_group);
+
+bool draw_list_has(const struct draw_list *list, enum draw_kind kind);
+
+#endif

@@ -1,0 +1,68 @@
+// Which effects a frame needs, and why: only these get shader code, passes and memory.
+#ifndef VOXCAST_RENDERER_FRAME_EFFECTS_H
+#define VOXCAST_RENDERER_FRAME_EFFECTS_H
+
+#include "renderer/renderer.h"
+
+enum effect {
+    EFFECT_TEXTURES,
+    EFFECT_ALPHA_MASK,
+    EFFECT_VERTEX_COLORS,
+    EFFECT_SPECULAR, // any material that reflects like a mirror or gloss
+    EFFECT_PUNCTUAL_LIGHTS,
+    EFFECT_AREA_LIGHTS, // planar emitters
+    EFFECT_SHADOWS,
+    EFFECT_SINGLE_VIEW_SHADOWS, // of the sun and of spots: one view each
+    EFFECT_POINT_SHADOWS,       // of lights that shine all around: six views each
+    EFFECT_LIGHT_TILES,         // lights of limited range
+    EFFECT_BLINN_PHONG,
+    EFFECT_ENVIRONMENT,
+    EFFECT_TRANSPARENCY, // blended or transmissive materials
+    EFFECT_AUTO_EXPOSURE,
+    EFFECT_INDIRECT_DIFFUSE, // light that matte surfaces pass on; all of the below need voxels, too
+    EFFECT_MULTI_BOUNCE,     // more than one reflection
+    EFFECT_INDIRECT_SPECULAR, // what glossy surfaces mirror
+    EFFECT_REFRACTION,
+    EFFECT_SOFT_SHADOWS, // of lights that have a size
+    EFFECT_AMBIENT_OCCLUSION,
+    EFFECT_ENVIRONMENT_LIGHT, // cones that leave the scene see the environment
+    EFFECT_VOXEL_COLORS,      // textures or vertex colours in voxels
+    EFFECT_CLIP_LEVELS,       // voxels in nested cubes rather than a grid
+    EFFECT_COUNT
+};
+
+#define EFFECT_BIT(effect) (1u << (effect))
+
+// What picks the code of shaders/lib/lighting.glsl and shaders/lib/geometry.glsl.
+#define DIRECT_LIGHT_EFFECTS                                                                       \
+    (EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_SINGLE_VIEW_SHADOWS) |                         \
+     EFFECT_BIT(EFFECT_POINT_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES) |                           \
+     EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) | EFFECT_BIT(EFFECT_AREA_LIGHTS) |                         \
+     EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR) |                                \
+     EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE))
+// Effects that need the scene's voxels.
+#define VOXEL_EFFECTS                                                                              \
+    (EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) | EFFECT_BIT(EFFECT_INDIRECT_SPECULAR) |                  \
+     EFFECT_BIT(EFFECT_REFRACTION) | EFFECT_BIT(EFFECT_SOFT_SHADOWS) |                             \
+     EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION))
+#define SURFACE_EFFECTS (EFFECT_BIT(EFFECT_TEXTURES) | EFFECT_BIT(EFFECT_VERTEX_COLORS))
+
+struct gpu_scene;
+
+struct effect_plan {
+    uint32_t bits;
+    char reasons[EFFECT_COUNT][96];
+};
+
+// Reads what the scene holds and what the settings ask for.
+void effects_plan(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
+                  const struct frame_params *params);
+
+const char *effect_name(enum effect effect);
+
+// Writes "NAME 0|1" lines for the effects in `mask`, and what kinds of textures there are if
+// EFFECT_TEXTURES is among them: the defines of a shader permutation.
+void effects_write_defines(uint32_t bits, uint32_t mask, const struct gpu_scene *gpu_scene,
+                           char *out_text, size_t out_size);
+
+#endif

@@ -1,0 +1,190 @@
+#include "renderer/frame/finite_check.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "renderer/gi/volume.h"
+#include "renderer/gpu/program.h"
+#include "renderer/passes/pass.h"
+#include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/frame/view.h"
+#include "shared/finite_check.h"
+
+#define MAX_GROUPS  4096u
+#define EVERY_WORD  0xffffffffu
+#define NOT_WRITTEN RESOURCE_COUNT // by any pass: part of the scene
+
+// As shaders/debug/finite_check.comp has them.
+enum texture_kind { TEXTURE_NONE, TEXTURE_PLAIN, TEXTURE_ARRAY, TEXTURE_VOLUME };
+
+struct checked {
+    const char *name;
+    enum resource resource;
+    const struct gpu_buffer *buffer; // NULL with `texture`
+    uint32_t record_words;
+    uint32_t floats, low_halves, high_halves; // words of a record; bit 31: all from word 31 on
+    const struct gpu_texture *texture;
+    enum texture_kind kind;
+};
+
+struct checked_list {
+    uint32_t count;
+    struct checked items[FINITE_MAX_RESOURCES];
+};
+
+// What the shader reads and writes.
+struct check_block {
+    struct finite_check_shape shape;
+    struct finite_check_masks masks;
+    struct finite_check_result results[FINITE_MAX_RESOURCES];
+};
+
+static struct checked *add(struct checked_list *list, const char *name, enum resource resource)
+{
+    assert(list->count < FINITE_MAX_RESOURCES);
+    struct checked *item = &list->items[list->count++];
+    *item = (struct checked){.name = name, .resource = resource};
+    return item;
+}
+
+static void add_buffer(struct checked_list *list, const char *name, enum resource resource,
+                       const struct gpu_buffer *buffer)
+{
+    if (!buffer)
+        return;
+    struct checked *item = add(list, name, resource);
+    item->buffer = buffer;
+    item->record_words = 1;
+    item->floats = EVERY_WORD;
+}
+
+static void add_texture(struct checked_list *list, const char *name, enum resource resource,
+                        const struct gpu_texture *texture, enum texture_kind kind)
+{
+    if (!texture)
+        return;
+    struct checked *item = add(list, name, resource);
+    item->texture = texture;
+    item->kind = kind;
+}
+
+// The last float of a block of vectors may be of unsigned numbers: a mask of its words.
+static void add_blocks(struct checked_list *list, const char *name, const struct gpu_buffer *buffer,
+                       uint32_t words, uint32_t floats)
+{
+    if (!buffer)
+        return;
+    add_buffer(list, name, NOT_WRITTEN, buffer);
+    list->items[list->count - 1].record_words = words;
+    list->items[list->count - 1].floats = floats;
+}
+
+static void add_view(struct checked_list *list, const struct view *view)
+{
+    add_texture(list, "depth", RESOURCE_DEPTH, view->depth, TEXTURE_PLAIN);
+    if (view->gbuffer) {
+        // All else is fractions of integers. The exponent of emission lies as that of a half does.
+        struct checked *item = add(list, "gbuffer", RESOURCE_GBUFFER);
+        item->buffer = view->gbuffer;
+        item->record_words = 8;
+        item->low_halves = 1u << 7;
+    }
+    add_buffer(list, "radiance", RESOURCE_RADIANCE, view->radiance);
+    add_buffer(list, "gathered", RESOURCE_RADIANCE, view->accumulation);
+    if (view->last_params.output == FRAME_OUTPUT_LINEAR)
+        add_buffer(list, "output", RESOURCE_OUTPUT, view->output);
+    add_buffer(list, "shadow_views", NOT_WRITTEN, view->shadow_views);
+}
+
+static void add_volume(struct checked_list *list, const struct voxel_volume *volume)
+{
+    add_texture(list, "voxel_radiance", RESOURCE_VOXEL_RADIANCE, volume->radiance, TEXTURE_VOLUME);
+    struct checked *faces = add(list, "irradiance_cache", RESOURCE_VOXEL_RADIANCE);
+    faces->buffer = volume->faces;
+    faces->record_words = FACE_WORDS + volume->params.cache_cones;
+    faces->low_halves = faces->high_halves =
+        3u << FACE_LIGHT | 3u << FACE_DIRECT | 3u << FACE_SHOWN;
+    faces->low_halves |= ~((1u << FACE_WORDS) - 1); // distances of the cones' hits
+}
+
+static void add_scene(struct checked_list *list, const struct gpu_scene *gpu_scene)
+{
+    // The last vector of lights and instances is of numbers that count.
+    add_blocks(list, "lights", gpu_scene->lights, 20, 0xffff);
+    add_blocks(list, "instances", gpu_scene->instance_blocks, 20, 0xffff);
+    add_blocks(list, "materials", gpu_scene->materials, 32, 0x0fffffff);
+    add_blocks(list, "vertices", gpu_scene->vertices, VERTEX_WORDS, 0x1fe7);
+    add_buffer(list, "environment", NOT_WRITTEN, gpu_scene->environment);
+    add_texture(list, "environment_levels", NOT_WRITTEN, gpu_scene->environment_levels,
+                TEXTURE_ARRAY);
+}
+
+static bool is_written(const struct view *view, enum resource resource)
+{
+    if (resource == NOT_WRITTEN)
+        return true;
+    for (uint32_t i = 0; i < PASS_COUNT; i++)
+        for (uint32_t j = 0; j < all_passes[i]->use_count && !view->pass_skip_reasons[i]; j++)
+            if (all_passes[i]->uses[j].resource == resource &&
+                (all_passes[i]->uses[j].access & ACCESS_WRITE))
+                return true;
+    return false;
+}
+
+static bool dispatch(const struct finite_check *check, const struct checked *item,
+                     struct gpu_buffer *block, uint32_t result, struct error *out_error)
+{
+    char defines[32];
+    snprintf(defines, sizeof(defines), "TEXTURE %d\n", item->kind);
+    const struct gpu_program *program =
+        gpu_program_get(check->gpu, "debug/finite_check.comp", defines, out_error);
+    if (!program)
+        return false;
+    uint32_t levels = item->texture ? gpu_texture_levels(item->texture) : 1;
+    for (uint32_t level = 0; level < levels; level++) {
+        size_t count = item->texture ? gpu_texture_texel_count(item->texture, level)
+                                     : gpu_buffer_size_bytes(item->buffer) / sizeof(uint32_t);
+        size_t groups = (count + LINEAR_GROUP - 1) / LINEAR_GROUP;
+        const uint32_t head[8] = {(uint32_t)count, item->record_words, result,           level,
+                                  item->floats,    item->low_halves,   item->high_halves};
+        gpu_buffer_write(block, 0, sizeof(head), head);
+        gpu_bind_storage(check->gpu, BIND_CHECK, block);
+        gpu_bind_storage(check->gpu, BIND_CHECKED, item->buffer);
+        gpu_bind_texture(check->gpu, UNIT_CHECKED, item->texture);
+        gpu_dispatch(check->gpu, program, groups < MAX_GROUPS ? (uint32_t)groups : MAX_GROUPS, 1,
+                     1);
+        gpu_barrier(check->gpu);
+    }
+    return true;
+}
+
+bool finite_check_run(const struct finite_check *check, struct finite_report *out_report,
+                      struct error *out_error)
+{
+    struct checked_list list = {0};
+    add_view(&list, check->view);
+    if (check->volume)
+        add_volume(&list, check->volume);
+    if (check->gpu_scene)
+        add_scene(&list, check->gpu_scene);
+    struct check_block found = {0};
+    for (uint32_t i = 0; i < FINITE_MAX_RESOURCES; i++)
+        found.results[i].first = UINT32_MAX;
+    struct gpu_buffer *block =
+        gpu_buffer_create(check->gpu, "finite_check", GPU_BUFFER_STATIC, sizeof(found), &found);
+    if (!block)
+        return error_set(out_error, "out of GPU memory");
+    bool done = true;
+    for (uint32_t i = 0; i < list.count && done; i++)
+        if (is_written(check->view, list.items[i].resource))
+            done = dispatch(check, &list.items[i], block, i, out_error);
+    if (done)
+        gpu_buffer_read(block, 0, sizeof(found), &found);
+    gpu_buffer_destroy(&block);
+    *out_report = (struct finite_report){.count = done ? list.count : 0};
+    for (uint32_t i = 0; i < out_report->count; i++)
+        out_report->resources[i] = (struct finite_resource){
+            list.items[i].name, found.results[i].count, found.results[i].first};
+    return done;
+}

@@ -1,0 +1,22 @@
+// Looks for values that are not finite in what a frame wrote and read: see renderer_check_finite().
+#ifndef VOXCAST_RENDERER_FRAME_FINITE_CHECK_H
+#define VOXCAST_RENDERER_FRAME_FINITE_CHECK_H
+
+#include "renderer/renderer.h"
+
+struct gpu;
+struct gpu_scene;
+struct voxel_volume;
+
+struct finite_check {
+    struct gpu *gpu;
+    const struct gpu_scene *gpu_scene; // NULL for none
+    const struct view *view;
+    const struct voxel_volume *volume; // that the view was drawn with; NULL for none
+};
+
+// Runs on the render thread and waits for the GPU.
+bool finite_check_run(const struct finite_check *check, struct finite_report *out_report,
+                      struct error *out_error);
+
+#endif

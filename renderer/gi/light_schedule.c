@@ -1,0 +1,189 @@
+#include "renderer/gi/light_schedule.h"
+
+#include <math.h>
+#include <string.h>
+
+// Time that a frame may spend on cones of the cache, on a CPU: little while the camera moves.
+#define MOVING_TRACE_MS 10.0
+#define REST_TRACE_MS   120.0
+#define FIRST_ENTRY_MS  0.006
+#define MIN_BUDGET      256.0
+#define MIN_REST_BUDGET 6000.0
+#define MAX_BUDGET      1e6
+#define GPU_BUDGET      131072u
+// Light has settled when what is still to come, a geometric series, is less than this share of any
+// voxel face's light.
+#define SETTLED_REST    0.008f
+#define MAX_GENERATIONS 48u
+// Pixels ask for faces in a pattern of so many frames: the cache is complete when nothing was asked
+// for in all of them.
+#define REQUEST_PATTERN 16u
+
+static void start_generation(struct voxel_volume *volume)
+{
+    struct voxel_light_state *light = &volume->light;
+    light->generation = light->generation % 65535u + 1;
+    light->start_pending = false;
+    light->relight = true;
+    light->quiet_frames = 0;
+    // Change and peak are sums over a generation.
+    gpu_buffer_fill(volume->counters, COUNTER_CACHE_CHANGE * 4, 4, 0);
+    gpu_buffer_fill(volume->counters, COUNTER_CACHE_PEAK * 4, 4, 0);
+}
+
+// Generations that make so many bounces: gathering pixels make the last one themselves.
+static uint32_t generations_needed(const struct voxel_light_params *params)
+{
+    if (params->bounces == 0)
+        return MAX_GENERATIONS;
+    return params->cache_shown ? params->bounces : params->bounces - 1;
+}
+
+static double entry_budget(const struct voxel_volume *volume,
+                           const struct voxel_light_params *params)
+{
+    if (params->trace_budget > 0)
+        return params->trace_budget;
+    if (!params->software)
+        return GPU_BUDGET;
+    double entry_ms = volume->light.entry_ms > 0.0 ? volume->light.entry_ms : FIRST_ENTRY_MS;
+    double budget = (params->camera_moved ? MOVING_TRACE_MS : REST_TRACE_MS) / entry_ms;
+    // The measured time holds what every frame pays, so that it must not be trusted to shrink
+    // budgets without end.
+    return fmin(fmax(budget, params->camera_moved ? MIN_BUDGET : MIN_REST_BUDGET), MAX_BUDGET);
+}
+
+static void plan_relight(struct voxel_volume *volume, const struct voxel_light_params *params,
+                         struct voxel_light_work *work)
+{
+    struct voxel_light_state *light = &volume->light;
+    work->relight = light->relight;
+    work->direct = light->relight_direct;
+    work->fresh_only = light->filling && light->relight_direct;
+    work->relight_end = volume->cell_level_count;
+    if (!light->relight)
+        return;
+    // Voxels that have just come in are black: those cannot wait for their level's turn.
+    bool one = params->levels_per_frame == LEVELS_PER_FRAME_ONE && volume->cell_level_count > 1 &&
+               !work->voxelize;
+    if (one) {
+        work->relight_first = light->next_level % volume->cell_level_count;
+        work->relight_end = work->relight_first + 1;
+        light->next_level = work->relight_end % volume->cell_level_count;
+        light->relight = light->next_level != 0;
+        light->relight_direct = light->relight_direct && light->relight;
+    } else {
+        light->next_level = 0;
+        light->relight = false;
+        light->relight_direct = false;
+    }
+}
+
+void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_params *params,
+                       struct voxel_light_work *out_work)
+{
+    struct voxel_light_state *light = &volume->light;
+    *out_work = (struct voxel_light_work){.voxelize = volume->region_count > 0};
+    light->needed = generations_needed(params);
+    light->unlimited = params->bounces == 0;
+    light->all_faces_requested = params->multi_bounce;
+    volume->frame = volume->frame % 0x7fffffffu + 1;
+    if (volume->lit_key != params->key || light->generation == 0) {
+        light->relight_direct = true;
+        volume->lit_key = params->key;
+        light->bounce = 0;
+        light->filling = false;
+        light->change = 0.0f;
+        light->rest = 1.0f;
+        light->converged = false;
+        light->start_pending = true;
+        light->relight = true;
+    }
+    if (out_work->voxelize) {
+        // Where all that moved is a clip level, light that had settled need not do so again: only
+        // the voxels that came in are lit and traced.
+        if (light->converged && !light->relight)
+            light->filling = true;
+        light->relight = true;
+        light->relight_direct = true;
+        light->converged = false;
+        light->quiet_frames = 0;
+    }
+    if (!params->multi_bounce && params->camera_moved) {
+        light->converged = false;
+        light->quiet_frames = 0;
+    }
+    if (light->converged && !light->unlimited && light->bounce < light->needed) {
+        light->converged = false; // a view has come that shows one bounce more of the cache
+        light->start_pending = true;
+    }
+    if (light->bounce >= light->needed && light->needed == 0)
+        light->converged = true; // gathering pixels need no cache
+    if (!light->converged && light->start_pending && !(light->relight && light->next_level != 0))
+        start_generation(volume);
+    plan_relight(volume, params, out_work);
+    out_work->trace = !light->converged && !(light->relight && light->next_level != 0);
+    // The first generation after an edit must not see old light where bounces are counted.
+    bool feeds = params->multi_bounce && (light->bounce > 0 || light->unlimited);
+    volume->uniforms.cache_generation = light->generation;
+    volume->uniforms.frame_number = volume->frame;
+    volume->uniforms.trace_budget = (uint32_t)entry_budget(volume, params);
+    volume->uniforms.multi_bounce = params->multi_bounce;
+    volume->uniforms.peak_radiance = light->peak;
+    light->feeds = feeds;
+}
+
+void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
+                         const struct voxel_light_report *report, double trace_ms)
+{
+    struct voxel_light_state *light = &volume->light;
+    // Faces without a record stay dark: make room, and voxelize anew.
+    if (report->overflow & OVERFLOW_FACES)
+        volume->faces_full = true;
+    // Counted in faces to gather; budgets are in faces to march.
+    if (report->traced >= MIN_BUDGET * CACHE_MARCH_COST / 2 && trace_ms > 0.0)
+        light->entry_ms = CACHE_MARCH_COST * trace_ms / report->traced;
+    if (generation != light->generation || light->start_pending || light->converged ||
+        volume->faces_full)
+        return;
+    light->left = report->left;
+    light->quiet_frames = report->left == 0 && report->traced == 0 ? light->quiet_frames + 1 : 0;
+    bool complete =
+        light->all_faces_requested ? report->left == 0 : light->quiet_frames >= REQUEST_PATTERN;
+    if (!complete)
+        return;
+    if (light->filling) {
+        light->filling = false;
+        light->converged = true;
+        light->version++;
+        light->relight = true;
+        return;
+    }
+    float change, peak;
+    memcpy(&change, &report->change_bits, sizeof(change));
+    memcpy(&peak, &report->peak_bits, sizeof(peak));
+    float ratio = light->change > 0.0f ? fminf(change / light->change, 0.95f) : 0.95f;
+    light->change = change;
+    light->rest = change * ratio / (1.0f - ratio);
+    light->peak = peak;
+    light->bounce++;
+    light->converged =
+        light->bounce >= light->needed || (light->unlimited && light->rest < SETTLED_REST);
+    light->start_pending = !light->converged;
+    light->settled_once = light->settled_once || light->converged;
+    light->version++;
+    // Cones that gather for pixels shall see the last bounce, too.
+    light->relight = true;
+}
+
+float voxel_light_convergence(const struct voxel_volume *volume)
+{
+    const struct voxel_light_state *light = &volume->light;
+    if (light->converged)
+        return 1.0f;
+    if (light->bounce == 0)
+        return 0.0f;
+    float left = light->unlimited ? fminf(light->rest, 1.0f)
+                                  : 1.0f - (float)light->bounce / (float)light->needed;
+    return 0.99f * (1.0f - left);
+}

@@ -1,0 +1,374 @@
+// The tree is Embree's (surface area heuristic), laid out in order of depth.
+#include "renderer/gpu_scene/bvh.h"
+
+#include <embree3/rtcore.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "renderer/gpu_scene/gpu_scene.h"
+
+#define MAX_LEAF_TRIANGLES 4u
+// Embree's own range.
+#define MAX_EXTENT 1e17
+
+// A triangle as rays meet it.
+struct flat_triangle {
+    float corner[3]; // relative to the centre
+    uint32_t id;     // visibility id
+    float edge_b[3]; // from there
+    float opacity;   // mean of a masked material
+    float edge_c[3];
+    uint32_t flags; // BVH_LIT_DIRECTLY, BVH_ONE_SIDED
+};
+
+// What Embree's builder makes, from its own memory.
+struct built_node {
+    bool leaf;
+    struct RTCBounds bounds[2]; // of the children
+    struct built_node *children[2];
+    uint32_t count; // of a leaf
+    uint32_t triangles[MAX_LEAF_TRIANGLES];
+};
+
+// Everything on its way to the GPU.
+struct bvh_work {
+    const struct gpu_scene *gpu_scene;
+    float center[3];
+    uint32_t triangle_count;
+    struct flat_triangle *triangles; // in the order of the document
+    struct RTCBuildPrimitive *boxes;
+    uint32_t node_count, sorted_count;
+    uint32_t (*nodes)[4];         // texels
+    struct flat_triangle *sorted; // in the order of the leaves
+};
+
+static bool blocks_light(const struct gpu_scene_instance *instance)
+{
+    return instance->visible && instance->group / DRAW_CULL_COUNT != DRAW_TRANSPARENT;
+}
+
+// Whether its emission reaches others as that of planar emitters.
+static bool emits_directly(const struct gpu_scene_instance *instance)
+{
+    return instance->emits_directly && !instance->large_emitter;
+}
+
+static const struct scene_material *material_of(const struct gpu_scene *gpu_scene,
+                                                const struct gpu_scene_instance *instance)
+{
+    const struct scene *scene = gpu_scene->scene;
+    return &scene->materials[scene->primitives[instance->primitive].material];
+}
+
+// Share of rays that its triangles stop.
+static float opacity_of(const struct gpu_scene *gpu_scene,
+                        const struct gpu_scene_instance *instance)
+{
+    const struct scene_material *material = material_of(gpu_scene, instance);
+    if (material->alpha_mode != SCENE_ALPHA_MASK)
+        return 1.0f;
+    uint32_t image = material->textures[SCENE_TEXTURE_BASE_COLOR].image;
+    const struct texture_space *space = &gpu_scene->texture_spaces[TEXTURE_SPACE_COLOR];
+    return material->base_color[3] *
+           (image == SCENE_NONE ? 1.0f : space->image_slots[image].mean[3]);
+}
+
+// Of all that the tree is made from.
+static uint64_t content_key(const struct gpu_scene *gpu_scene)
+{
+    const struct scene_revisions *now = &gpu_scene->scene->revisions;
+    uint64_t key = 1469598103934665603ull;
+    key = (key ^ now->geometry) * 1099511628211ull;
+    key = (key ^ now->transforms) * 1099511628211ull;
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
+        const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
+        float opacity = opacity_of(gpu_scene, instance);
+        uint32_t bits;
+        memcpy(&bits, &opacity, sizeof(bits));
+        key = (key ^ bits) * 1099511628211ull;
+        key = (key ^
+               (blocks_light(instance) + 2u * emits_directly(instance) + 4u * instance->group)) *
+              1099511628211ull;
+    }
+    return key;
+}
+
+bool gpu_scene_need_tree(struct gpu_scene *gpu_scene)
+{
+    uint64_t key = content_key(gpu_scene);
+    if (gpu_scene->bvh && gpu_scene->bvh->key == key)
+        return true;
+    bvh_destroy(&gpu_scene->bvh);
+    gpu_scene->bvh = bvh_create(gpu_scene);
+    if (gpu_scene->bvh)
+        gpu_scene->bvh->key = key;
+    return gpu_scene->bvh != NULL;
+}
+
+static void to_scene_corner(const struct bvh_work *work, const float matrix[16],
+                            const float position[3], double out[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = (double)matrix[axis] * position[0] + (double)matrix[4 + axis] * position[1] +
+                    (double)matrix[8 + axis] * position[2] + (double)matrix[12 + axis] -
+                    (double)work->center[axis];
+}
+
+// Adds a triangle unless it has no area or reaches too far.
+static void add_triangle(struct bvh_work *work, const double corners[3][3],
+                         const struct flat_triangle *traits)
+{
+    struct flat_triangle triangle = *traits;
+    struct RTCBuildPrimitive box = {.primID = work->triangle_count};
+    float *lower = &box.lower_x, *upper = &box.upper_x;
+    double edges[2][3], area[3], extent = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+        lower[axis] = (float)fmin(corners[0][axis], fmin(corners[1][axis], corners[2][axis]));
+        upper[axis] = (float)fmax(corners[0][axis], fmax(corners[1][axis], corners[2][axis]));
+        triangle.corner[axis] = (float)corners[0][axis];
+        for (int i = 0; i < 2; i++)
+            edges[i][axis] = corners[i + 1][axis] - corners[0][axis];
+        triangle.edge_b[axis] = (float)edges[0][axis];
+        triangle.edge_c[axis] = (float)edges[1][axis];
+        for (int i = 0; i < 3; i++)
+            extent = fmax(extent, fabs(corners[i][axis]));
+        // Rounding must not leave a corner outside.
+        lower[axis] = nextafterf(lower[axis], -INFINITY);
+        upper[axis] = nextafterf(upper[axis], INFINITY);
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        int j = (axis + 1) % 3, k = (axis + 2) % 3;
+        area[axis] = edges[0][j] * edges[1][k] - edges[0][k] * edges[1][j];
+    }
+    double size = area[0] * area[0] + area[1] * area[1] + area[2] * area[2];
+    if (!(size > 0.0) || !isfinite(size) || !(extent < MAX_EXTENT))
+        return;
+    work->boxes[work->triangle_count] = box;
+    work->triangles[work->triangle_count++] = triangle;
+}
+
+// Whether a placement turns triangles over: their edges then change places.
+static bool is_mirrored(const float m[16])
+{
+    double cross[3] = {(double)m[5] * m[10] - (double)m[6] * m[9],
+                       (double)m[6] * m[8] - (double)m[4] * m[10],
+                       (double)m[4] * m[9] - (double)m[5] * m[8]};
+    return m[0] * cross[0] + m[1] * cross[1] + m[2] * cross[2] < 0.0;
+}
+
+static void add_instance(struct bvh_work *work, const struct gpu_scene_instance *instance)
+{
+    const struct scene *scene = work->gpu_scene->scene;
+    const struct scene_primitive *primitive = &scene->primitives[instance->primitive];
+    const float *matrix = instance->world_from_local;
+    struct flat_triangle traits = {
+        .opacity = opacity_of(work->gpu_scene, instance),
+        .flags = (emits_directly(instance) ? BVH_LIT_DIRECTLY : 0) |
+                 (material_of(work->gpu_scene, instance)->double_sided ? 0 : BVH_ONE_SIDED),
+    };
+    bool mirrored = is_mirrored(matrix);
+    for (uint32_t i = 0; i < instance->index_count / 3; i++) {
+        double corners[3][3];
+        for (int corner = 0; corner < 3; corner++) {
+            uint32_t index = scene->indices[primitive->index_first + 3 * i + (uint32_t)corner];
+            int at = mirrored && corner > 0 ? 3 - corner : corner;
+            to_scene_corner(work, matrix, scene->vertices[index].position, corners[at]);
+        }
+        traits.id = instance->first_id + i + 1;
+        add_triangle(work, corners, &traits);
+    }
+}
+
+static bool collect_triangles(struct bvh_work *work)
+{
+    const struct gpu_scene *gpu_scene = work->gpu_scene;
+    size_t maximum = 0;
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
+        maximum +=
+            blocks_light(&gpu_scene->instances[i]) ? gpu_scene->instances[i].index_count / 3 : 0;
+    for (int axis = 0; axis < 3; axis++)
+        work->center[axis] = 0.5f * (gpu_scene->bounds_min[axis] + gpu_scene->bounds_max[axis]);
+    work->triangles = malloc((maximum + 1) * sizeof(*work->triangles));
+    work->sorted = malloc((maximum + 1) * sizeof(*work->sorted));
+    // Embree's primitives are aligned to their size.
+    work->boxes = aligned_alloc(32, (maximum + 1) * sizeof(*work->boxes));
+    if (!work->triangles || !work->sorted || !work->boxes)
+        return false;
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
+        if (blocks_light(&gpu_scene->instances[i]))
+            add_instance(work, &gpu_scene->instances[i]);
+    return true;
+}
+
+static void *create_node(RTCThreadLocalAllocator allocator, unsigned child_count, void *user)
+{
+    (void)child_count;
+    (void)user;
+    struct built_node *node = rtcThreadLocalAlloc(allocator, sizeof(*node), 16);
+    *node = (struct built_node){0};
+    return node;
+}
+
+static void set_children(void *node, void **children, unsigned child_count, void *user)
+{
+    (void)user;
+    for (unsigned i = 0; i < child_count; i++)
+        ((struct built_node *)node)->children[i] = children[i];
+}
+
+static void set_bounds(void *node, const struct RTCBounds **bounds, unsigned child_count,
+                       void *user)
+{
+    (void)user;
+    for (unsigned i = 0; i < child_count; i++)
+        ((struct built_node *)node)->bounds[i] = *bounds[i];
+}
+
+static void *create_leaf(RTCThreadLocalAllocator allocator, const struct RTCBuildPrimitive *boxes,
+                         size_t count, void *user)
+{
+    (void)user;
+    struct built_node *node = rtcThreadLocalAlloc(allocator, sizeof(*node), 16);
+    *node = (struct built_node){.leaf = true, .count = (uint32_t)count};
+    for (size_t i = 0; i < count; i++)
+        node->triangles[i] = boxes[i].primID;
+    return node;
+}
+
+static void write_floats(uint32_t texel[4], const float values[3], uint32_t word)
+{
+    memcpy(texel, values, 3 * sizeof(float));
+    texel[3] = word;
+}
+
+static uint32_t flatten(struct bvh_work *work, const struct built_node *node);
+
+// A child's word; its triangles go behind those before.
+static uint32_t flatten_child(struct bvh_work *work, const struct built_node *child)
+{
+    if (!child)
+        return BVH_LEAF;
+    if (!child->leaf)
+        return flatten(work, child);
+    uint32_t first = work->sorted_count;
+    for (uint32_t i = 0; i < child->count; i++)
+        work->sorted[work->sorted_count++] = work->triangles[child->triangles[i]];
+    return BVH_LEAF | first << BVH_COUNT_BITS | child->count;
+}
+
+// Recursion goes as deep as the tree, BVH_MAX_DEPTH.
+static uint32_t flatten(struct bvh_work *work, const struct built_node *node)
+{
+    uint32_t number = work->node_count++;
+    for (int i = 0; i < 2; i++) {
+        const struct RTCBounds *bounds = &node->bounds[i];
+        const float nothing[2][3] = {{INFINITY, INFINITY, INFINITY},
+                                     {-INFINITY, -INFINITY, -INFINITY}};
+        const struct built_node *child = node->children[i];
+        uint32_t word = flatten_child(work, child);
+        uint32_t(*texels)[4] = work->nodes + (size_t)number * BVH_NODE_TEXELS + 2 * i;
+        write_floats(texels[0], child ? &bounds->lower_x : nothing[0], word);
+        write_floats(texels[1], child ? &bounds->upper_x : nothing[1], 0);
+    }
+    return number;
+}
+
+static bool build(struct bvh_work *work)
+{
+    RTCDevice device = rtcNewDevice(NULL);
+    RTCBVH embree_bvh = device ? rtcNewBVH(device) : NULL;
+    // Inner nodes are fewer than leaves; the root is one even above a single leaf.
+    work->nodes = calloc(((size_t)work->triangle_count + 1) * BVH_NODE_TEXELS, sizeof(uint32_t[4]));
+    struct built_node *root = NULL;
+    if (embree_bvh && work->nodes && work->triangle_count > 0) {
+        struct RTCBuildArguments arguments = rtcDefaultBuildArguments();
+        arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
+        arguments.maxBranchingFactor = 2;
+        arguments.maxDepth = BVH_MAX_DEPTH - 1;
+        arguments.maxLeafSize = MAX_LEAF_TRIANGLES;
+        arguments.bvh = embree_bvh;
+        arguments.primitives = work->boxes;
+        arguments.primitiveCount = work->triangle_count;
+        arguments.primitiveArrayCapacity = work->triangle_count;
+        arguments.createNode = create_node;
+        arguments.setNodeChildren = set_children;
+        arguments.setNodeBounds = set_bounds;
+        arguments.createLeaf = create_leaf;
+        root = rtcBuildBVH(&arguments);
+    }
+    bool done = embree_bvh && work->nodes && (root || work->triangle_count == 0);
+    if (done) {
+        struct built_node above = {.children = {root}};
+        if (root)
+            above.bounds[0] = (struct RTCBounds){.lower_x = -INFINITY,
+                                                 .lower_y = -INFINITY,
+                                                 .lower_z = -INFINITY,
+                                                 .upper_x = INFINITY,
+                                                 .upper_y = INFINITY,
+                                                 .upper_z = INFINITY};
+        flatten(work, root && !root->leaf ? root : &above);
+    }
+    if (embree_bvh)
+        rtcReleaseBVH(embree_bvh);
+    if (device)
+        rtcReleaseDevice(device);
+    return done;
+}
+
+// A texture of so many texels in rows; takes its size from `texels`, which has no padding.
+static struct gpu_texture *upload(struct gpu *gpu, const char *label, const void *texels,
+                                  size_t count)
+{
+    size_t width = (size_t)1 << BVH_ROW_BITS;
+    size_t height = (count + width - 1) / width;
+    height = height ? height : 1;
+    if (height > gpu_get_info(gpu)->max_texture_edge)
+        return NULL;
+    uint32_t(*rows)[4] = calloc(width * height, sizeof(*rows));
+    if (!rows)
+        return NULL;
+    memcpy(rows, texels, count * sizeof(*rows));
+    struct gpu_texture_params params = {.label = label,
+                                        .format = GPU_FORMAT_RGBA32UI,
+                                        .width = (uint32_t)width,
+                                        .height = (uint32_t)height,
+                                        .filter = GPU_FILTER_NEAREST};
+    struct gpu_texture *texture = gpu_texture_create(gpu, &params);
+    if (texture)
+        gpu_texture_write(texture, 0, 0, rows);
+    free(rows);
+    return texture;
+}
+
+struct bvh *bvh_create(const struct gpu_scene *gpu_scene)
+{
+    struct bvh_work work = {.gpu_scene = gpu_scene};
+    struct bvh *bvh = calloc(1, sizeof(*bvh));
+    if (bvh && collect_triangles(&work) && build(&work)) {
+        memcpy(bvh->center, work.center, sizeof(bvh->center));
+        bvh->triangle_count = work.sorted_count;
+        bvh->nodes = upload(gpu_scene->gpu, "geometry.tree", work.nodes,
+                            (size_t)work.node_count * BVH_NODE_TEXELS);
+        bvh->triangles = upload(gpu_scene->gpu, "geometry.tree", work.sorted,
+                                (size_t)work.sorted_count * BVH_TRIANGLE_TEXELS);
+    }
+    free(work.triangles);
+    free(work.sorted);
+    free(work.boxes);
+    free(work.nodes);
+    if (bvh && (!bvh->nodes || !bvh->triangles))
+        bvh_destroy(&bvh);
+    return bvh;
+}
+
+void bvh_destroy(struct bvh **bvh_slot)
+{
+    struct bvh *bvh = *bvh_slot;
+    *bvh_slot = NULL;
+    if (!bvh)
+        return;
+    gpu_texture_destroy(&bvh->nodes);
+    gpu_texture_destroy(&bvh->triangles);
+    free(bvh);
+}

@@ -1,0 +1,99 @@
+#include "renderer/image/image_batch.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "renderer/image/image_decode.h"
+#include "renderer/scene/scene.h"
+
+struct image_batch {
+    struct image_request *requests;
+    uint32_t count;
+    _Atomic uint32_t next;
+    _Atomic uint64_t bytes; // decoded, all pictures
+};
+
+static bool reserve_bytes(struct image_batch *batch, uint32_t width, uint32_t height,
+                          struct error *out_error)
+{
+    uint64_t bytes = (uint64_t)width * height * 4;
+    if (atomic_fetch_add(&batch->bytes, bytes) + bytes > SCENE_MAX_ALL_IMAGES_BYTES) {
+        atomic_fetch_sub(&batch->bytes, bytes);
+        return error_set(out_error, "the scene's pictures exceed %llu MiB together",
+                         SCENE_MAX_ALL_IMAGES_BYTES >> 20);
+    }
+    return true;
+}
+
+static void decode_request(struct image_batch *batch, struct image_request *request,
+                           const uint8_t *bytes, size_t size)
+{
+    uint32_t width, height;
+    if (!image_decode_size(bytes, size, &width, &height, &request->error) ||
+        !reserve_bytes(batch, width, height, &request->error)) {
+        return;
+    }
+    request->image = image_decode(bytes, size, &request->error);
+    if (request->image && request->key.path) {
+        asset_cache_put(&request->key, request->image);
+    }
+}
+
+static void load_request(struct image_batch *batch, struct image_request *request)
+{
+    request->image = NULL;
+    bool is_file = request->bytes == NULL;
+    if (is_file && !asset_read_stamp(request->key.path, &request->key.stamp)) {
+        error_set(&request->error, "'%.200s' is not a readable file", request->key.path);
+        return;
+    }
+    struct image *cached = request->key.path ? asset_cache_get(&request->key) : NULL;
+    if (cached) {
+        if (reserve_bytes(batch, cached->width, cached->height, &request->error)) {
+            request->image = cached;
+        } else {
+            image_release(&cached);
+        }
+        return;
+    }
+    if (!is_file) {
+        decode_request(batch, request, request->bytes, request->size);
+        return;
+    }
+    uint8_t *bytes;
+    size_t size;
+    if (asset_read_file(request->key.path, SCENE_MAX_IMAGE_BYTES, &bytes, &size,
+                        &request->key.stamp, &request->error)) {
+        decode_request(batch, request, bytes, size);
+        free(bytes);
+    }
+}
+
+static void *batch_thread(void *argument)
+{
+    struct image_batch *batch = argument;
+    for (uint32_t i; (i = atomic_fetch_add(&batch->next, 1)) < batch->count;) {
+        load_request(batch, &batch->requests[i]);
+    }
+    return NULL;
+}
+
+void image_batch_load(struct image_request *requests, uint32_t count)
+{
+    struct image_batch batch = {.requests = requests, .count = count};
+    pthread_t threads[IMAGE_BATCH_MAX_THREADS];
+    uint32_t thread_count = 0;
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    // This thread works too; helpers that cannot be started leave it more to do.
+    while (thread_count + 1 < count && thread_count + 1 < IMAGE_BATCH_MAX_THREADS &&
+           (long)thread_count + 1 < cores &&
+           pthread_create(&threads[thread_count], NULL, batch_thread, &batch) == 0) {
+        thread_count++;
+    }
+    batch_thread(&batch);
+    for (uint32_t i = 0; i < thread_count; i++) {
+        pthread_join(threads[i], NULL);
+    }
+}

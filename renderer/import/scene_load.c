@@ -1,0 +1,113 @@
+#include "renderer/import/scene_load.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#define BUILTIN_PREFIX "builtin:"
+
+static bool has_extension(const char *path, const char *extension)
+{
+    size_t length = strlen(path);
+    size_t extension_length = strlen(extension);
+    return length > extension_length &&
+           strcasecmp(path + length - extension_length, extension) == 0;
+}
+
+// A GLB is known by its magic, whatever its name.
+static bool has_glb_magic(const char *path)
+{
+    char magic[4] = {0};
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        return false;
+    }
+    size_t count = fread(magic, 1, sizeof(magic), file);
+    fclose(file);
+    return count == sizeof(magic) && memcmp(magic, "glTF", sizeof(magic)) == 0;
+}
+
+static struct scene *import_file(const char *path, struct error *out_error)
+{
+    struct stat status;
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) {
+        error_set(out_error, "scene '%.200s' is not a regular file", path);
+        return NULL;
+    }
+    if (has_extension(path, ".gltf") || has_extension(path, ".glb") || has_glb_magic(path)) {
+        return scene_import_gltf(path, out_error);
+    }
+    if (has_extension(path, ".obj")) {
+        return scene_import_obj(path, out_error);
+    }
+    error_set(out_error,
+              "scene '%.200s' is of no supported kind; supported are glTF 2.0 (.gltf, .glb), "
+              "Wavefront OBJ (.obj) and the built-in scenes (builtin:NAME)",
+              path);
+    return NULL;
+}
+
+// Glowing pictures (labels, gauges) light nothing; surfaces of constant emission are lights.
+static bool is_lit(const struct scene *scene)
+{
+    if (scene->light_count > 0) {
+        return true;
+    }
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        const struct scene_material *material = &scene->materials[i];
+        const float *emissive = material->emissive;
+        bool constant = material->textures[SCENE_TEXTURE_EMISSIVE].image == SCENE_NONE;
+        if (constant && material->emissive_strength > 0.0f &&
+            emissive[0] + emissive[1] + emissive[2] > 0.0f) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A file that brings no light at all would be a black picture: give it an overcast sky.
+static void add_default_sky(struct scene *scene)
+{
+    scene->environment = (struct scene_environment){
+        .type = SCENE_ENVIRONMENT_GRADIENT,
+        .intensity = 1.0f,
+        .color = {0.85f, 0.92f, 1.0f},
+        .horizon_color = {0.8f, 0.8f, 0.8f},
+        .ground_color = {0.3f, 0.28f, 0.26f},
+    };
+    scene_add_warning(scene, "the file holds no light: a default sky lights it (environment.type)");
+}
+
+struct scene *scene_load(const char *source, struct error *out_error)
+{
+    struct scene *scene;
+    char *canonical = NULL;
+    if (strncmp(source, BUILTIN_PREFIX, strlen(BUILTIN_PREFIX)) == 0) {
+        canonical = strdup(source);
+        scene = scene_create_builtin(source + strlen(BUILTIN_PREFIX), out_error);
+    } else {
+        canonical = realpath(source, NULL);
+        if (!canonical) {
+            error_set(out_error, "scene '%.200s': %s", source, strerror(errno));
+            return NULL;
+        }
+        scene = import_file(canonical, out_error);
+        if (scene && !is_lit(scene)) {
+            add_default_sky(scene);
+        }
+    }
+    if (scene && !canonical) {
+        scene_destroy(&scene);
+        error_set(out_error, "out of memory");
+    }
+    if (!scene) {
+        free(canonical);
+        return NULL;
+    }
+    free(scene->source_path);
+    scene->source_path = canonical;
+    return scene;
+}

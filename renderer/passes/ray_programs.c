@@ -1,0 +1,41 @@
+// What the passes that gather by rays share: programs that shade what rays meet, and the filter.
+#include <stdio.h>
+
+#include "renderer/gi/gi.h"
+#include "renderer/gpu/program.h"
+#include "renderer/passes/pass.h"
+#include "renderer/gpu_scene/gpu_scene.h"
+
+// Effects that what a ray meets is shaded by. Tiles of the screen mean nothing there.
+static const struct pass shading_of_hits = {
+    .effects_used = (SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ALPHA_MASK) |
+                     EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
+                     EFFECT_BIT(EFFECT_MULTI_BOUNCE)) &
+                    ~EFFECT_BIT(EFFECT_LIGHT_TILES),
+};
+
+const struct gpu_program *hit_program(const struct frame *frame, const char *shader,
+                                      struct error *out_error)
+{
+    char extra[128];
+    snprintf(extra, sizeof(extra), "GATHER_STEP %u\nLIGHT_TILES 0\nSHADOW_TAPS 1u\nLIT_HITS %d\n",
+             gi_gather_step(frame), frame->gpu_scene->counts.lights <= GI_MAX_RAY_LIGHTS);
+    return voxel_program(frame, &shading_of_hits, shader, extra, out_error);
+}
+
+bool filter_accumulation(const struct frame *frame, bool specular, struct error *out_error)
+{
+    if (frame->accumulate_only)
+        return true;
+    char extra[48];
+    uint32_t step = gi_gather_step(frame), pixels = step * GROUP_EDGE;
+    snprintf(extra, sizeof(extra), "GATHER_STEP %u\nGLOSS %d\n", step, specular);
+    const struct gpu_program *program =
+        gpu_program_get(frame->gpu, "gi/accumulation_filter.comp", extra, out_error);
+    if (!program)
+        return false;
+    gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
+                 (frame->height + pixels - 1) / pixels, 1);
+    gpu_barrier(frame->gpu);
+    return true;
+}

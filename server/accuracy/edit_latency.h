@@ -1,0 +1,53 @@
+// How a picture follows an edit of a light: the edit is made and taken back in turn, and each frame
+// is compared with the settled pictures of before and after.
+#ifndef VOXCAST_SERVER_ACCURACY_EDIT_LATENCY_H
+#define VOXCAST_SERVER_ACCURACY_EDIT_LATENCY_H
+
+#include "renderer/renderer.h"
+#include "server/accuracy/samples.h"
+
+enum edit_kind {
+    EDIT_COLOR,     // times 0.2, 0.6, 1
+    EDIT_INTENSITY, // times 0.25
+    EDIT_KIND_COUNT
+};
+
+extern const char *const edit_kind_names[EDIT_KIND_COUNT];
+
+struct edit_params {
+    struct renderer *renderer; // shows `scene`
+    struct scene *scene;       // is as before afterwards
+    struct view *view;         // to measure in; NULL for one of its own
+    const struct frame_params *frame;
+    enum edit_kind kind;
+    uint32_t light, material; // SCENE_NONE for both: the first light that shines, else material
+    uint32_t repetitions;     // edits measured
+};
+
+// A change between two pictures is the mean absolute difference of linear radiance, exposed as the
+// first settled picture is, and clipped at 1.
+enum edit_stage {
+    EDIT_FIRST,    // 1 % of the change is in the picture
+    EDIT_ARRIVED,  // 95 % of it are there, and stay
+    EDIT_INDIRECT, // 95 % of the change of indirect light alone, not clipped, are there, and stay
+    EDIT_SETTLED,  // nothing more changes
+    EDIT_STAGE_COUNT
+};
+
+extern const char *const edit_stage_names[EDIT_STAGE_COUNT];
+
+struct edit_result {
+    uint32_t light, material;                // what was edited; the other is SCENE_NONE
+    double change;                           // between the settled pictures
+    struct samples ms[EDIT_STAGE_COUNT];     // from the edit on, over the repetitions
+    struct samples frames[EDIT_STAGE_COUNT]; // likewise
+};
+
+// Measures; times are those of drawing and reading back linear pictures, one
+// after another. False with a message if nothing shines, or the picture does not settle. The
+// result is to be finished in any case.
+bool edit_measure(const struct edit_params *params, struct edit_result *out_result,
+                  struct error *out_error);
+void edit_result_finish(struct edit_result *result);
+
+#endif

@@ -1,0 +1,31 @@
+// How far measuring has come, and who is told.
+#ifndef VOXCAST_SERVER_ACCURACY_PROGRESS_H
+#define VOXCAST_SERVER_ACCURACY_PROGRESS_H
+
+#include "server/accuracy/sweep.h"
+
+enum accuracy_stage {
+    ACCURACY_TRACING,   // the truth; about twice a second
+    ACCURACY_TRACED,    // or loaded
+    ACCURACY_MEASURING, // rungs: before the first, and after each
+};
+
+// How far a run has come.
+struct accuracy_progress {
+    enum accuracy_stage stage;
+    uint32_t samples;                     // of the truth, a pixel; 0 if it was loaded
+    double noise;                         // of the truth; not finite while it is not known
+    uint32_t done, configuration_count;   // rungs
+    const struct configuration *measured; // the newest, in this run; NULL for none
+    const struct configuration *next;     // NULL at the end
+    double measured_s;                    // what `measured` took
+    double left_s;                        // of this stage; NaN while it is not known
+};
+
+// Who is told how a run goes on, and may end it. Zero: nobody.
+struct accuracy_watch {
+    bool (*tell)(void *user, const struct accuracy_progress *progress); // false ends the run
+    void *user;
+};
+
+#endif

@@ -1,0 +1,19 @@
+// A scene, a renderer that shows it, and a frame of it.
+#ifndef VOXCAST_SERVER_ACCURACY_SHOT_H
+#define VOXCAST_SERVER_ACCURACY_SHOT_H
+
+#include "renderer/renderer.h"
+
+struct shot {
+    struct scene *scene;
+    struct renderer *renderer;
+    struct frame_params params; // with FRAME_OUTPUT_YCBCR; the caller sets another
+};
+
+void shot_close(struct shot *shot);
+
+// The view of a scene when none is asked for: its first camera, else one that frames its bounds
+// from the front and a little above.
+void shot_default_camera(const struct scene *scene, float aspect, struct view_camera *out_camera);
+
+#endif

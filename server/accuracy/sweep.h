@@ -1,0 +1,43 @@
+// Configurations that are measured: quality and settings each.
+#ifndef VOXCAST_SERVER_ACCURACY_SWEEP_H
+#define VOXCAST_SERVER_ACCURACY_SWEEP_H
+
+#include <stdint.h>
+#include "renderer/renderer.h"
+
+#define CONFIGURATION_NAME_SIZE  64u
+#define CONFIGURATION_TEXT_SIZE  64u
+#define CONFIGURATION_MAX_SETS   16u
+#define SWEEP_MAX_CONFIGURATIONS 256u
+
+struct cJSON;
+
+// One setting that is measured.
+struct configuration {
+    char name[CONFIGURATION_NAME_SIZE]; // letters, digits, '-', '_' and '.': names its files
+    enum quality quality;
+    double scale; // size it is rendered at over the size shown: 0.25 to 1, or 2
+    uint32_t set_count;
+    struct {
+        char key[CONFIGURATION_TEXT_SIZE], value[CONFIGURATION_TEXT_SIZE]; // a field of settings
+    } sets[CONFIGURATION_MAX_SETS];
+};
+
+struct sweep {
+    uint32_t configuration_count;
+    struct configuration configurations[SWEEP_MAX_CONFIGURATIONS];
+};
+
+// "quick" (the presets), "full" (methods, voxels, gather modes, cones, steps, bounces, levels and
+// scales, in turn), or a file: a JSON array of {"name", "preset", "scale", "set": {"KEY": VALUE}},
+// all but the name optional. False with a message that names rung, key and range.
+bool sweep_load(const char *name, struct sweep *out_sweep, struct error *out_error);
+
+// Applies quality and sets; size and scale are the caller's.
+bool configuration_apply(const struct configuration *configuration, struct frame_params *params,
+                         struct error *out_error);
+
+// {"preset", "scale", "set"}: equal text means equal settings. The caller deletes it.
+struct cJSON *configuration_json(const struct configuration *configuration);
+
+#endif

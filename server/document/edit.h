@@ -1,0 +1,40 @@
+// Applies edits to the document, tells them to the other clients, and takes them back.
+//
+// Runs where the document lives: the render thread.
+#ifndef VOXCAST_SERVER_DOCUMENT_EDIT_H
+#define VOXCAST_SERVER_DOCUMENT_EDIT_H
+
+#include <cjson/cJSON.h>
+
+#include "protocol/command.h"
+#include "server/document/document.h"
+
+#define EDIT_HISTORY_STEPS 64u
+
+// One undo step: what an edit changed.
+struct edit_step {
+    enum method method;
+    uint32_t target;
+    bool open; // the newest edit in it was transient: the next of the same fields joins it
+    uint32_t value_count;
+    struct parameter_value before[COMMAND_MAX_VALUES];
+    struct parameter_value after[COMMAND_MAX_VALUES];
+};
+
+// One client's edits: steps below `position` can be undone, the others redone. Zero is empty.
+struct edit_history {
+    uint32_t count;
+    uint32_t position;
+    struct edit_step *steps[EDIT_HISTORY_STEPS]; // owned
+};
+
+void edit_history_clear(struct edit_history *history);
+
+// Applies a command with METHOD_EDITS other than scene.load. On success `out_edit` is the member of
+// `edits` that PROTOCOL.md describes, without revision, the caller's; it is NULL if there was
+// nothing to undo or redo. What the reply holds besides is added to `result`.
+bool edit_apply(const struct document *document, struct edit_history *history,
+                struct command *command, cJSON *result, cJSON **out_edit,
+                struct rpc_error *out_error);
+
+#endif

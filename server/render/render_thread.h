@@ -1,0 +1,54 @@
+// The thread that owns the renderer, the scene document and all edits.
+#ifndef VOXCAST_SERVER_RENDER_RENDER_THREAD_H
+#define VOXCAST_SERVER_RENDER_RENDER_THREAD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "server/render/accuracy_service.h"
+#include "server/stream/frame_stream.h"
+#include "server/stream/jpeg_workers.h"
+#include "server/network/mailbox.h"
+#include "server/network/outbox.h"
+
+struct render_thread;
+
+// All outlive the thread.
+struct render_thread_params {
+    const char *gpu;
+    const char *scene_source;                          // path or "builtin:NAME"
+    const char *scene_dir;                             // what clients may load from; NULL for none
+    uint32_t message_bytes, message_rate, max_clients; // told to clients
+    struct mailbox *mailbox;
+    struct outbox *outbox;
+    struct frame_stream *stream;
+    struct jpeg_workers *workers;
+    struct accuracy_service *accuracy;
+    // Called from the thread when it cannot go on: no renderer, or the first scene fails.
+    void (*failed)(void *user);
+    void *user;
+};
+
+struct render_status {
+    bool failed;
+    bool ready; // a scene is shown
+    char gl_renderer[128];
+    char scene[256];
+    uint64_t frames_drawn;
+    uint64_t draw_us; // sum, from the call to the pixels
+    uint64_t revision;
+};
+
+// NULL when out of memory or threads.
+struct render_thread *render_thread_start(const struct render_thread_params *params);
+
+// Asks the thread to end after what it is doing; does not wait. Any thread.
+void render_thread_stop(struct render_thread *thread);
+
+// Stops and joins.
+void render_thread_destroy(struct render_thread **thread);
+
+// Any thread.
+void render_thread_get_status(struct render_thread *thread, struct render_status *out_status);
+
+#endif

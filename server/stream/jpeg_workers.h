@@ -1,0 +1,32 @@
+// Threads that turn planes of pixels into JPEG frames. They hold copies: own bytes only.
+#ifndef VOXCAST_SERVER_STREAM_JPEG_WORKERS_H
+#define VOXCAST_SERVER_STREAM_JPEG_WORKERS_H
+
+#include <stdint.h>
+
+#include "renderer/renderer.h"
+#include "server/stream/frame_stream.h"
+
+#define JPEG_MAX_WORKERS 16u
+
+struct jpeg_workers;
+
+struct jpeg_workers_params {
+    uint32_t thread_count;       // 1 to JPEG_MAX_WORKERS
+    int quality;                 // 1 to 100
+    struct frame_stream *stream; // outlives the workers
+};
+
+// NULL when out of memory or threads.
+struct jpeg_workers *jpeg_workers_create(const struct jpeg_workers_params *params);
+
+// Finishes the jobs at hand, drops those that wait, and joins the threads.
+void jpeg_workers_destroy(struct jpeg_workers **workers);
+
+// Copies the planes (FRAME_OUTPUT_YCBCR) and hands them to a worker, which fills the header's sizes
+// and encode time and calls frame_stream_finish() for the slot, also when that fails. Runs on the
+// render thread.
+void jpeg_workers_submit(struct jpeg_workers *workers, uint32_t slot,
+                         const struct frame_header *header, const struct frame_pixels *pixels);
+
+#endif

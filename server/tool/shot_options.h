@@ -1,0 +1,32 @@
+// A scene, a renderer that shows it, and the frame that the options of a command ask for.
+#ifndef VOXCAST_SERVER_TOOL_SHOT_OPTIONS_H
+#define VOXCAST_SERVER_TOOL_SHOT_OPTIONS_H
+
+#include "server/accuracy/shot.h"
+#include "server/tool/tool_options.h"
+
+struct cli_shot_options {
+    const char *source; // file or builtin:NAME
+    const char *gpu;
+    struct cli_size size;
+    struct cli_camera camera;
+    struct cli_settings settings;
+};
+
+// Declares --size, --gpu and the options of camera and settings; initialises them but the size.
+void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target);
+
+// Loads the scene, prints its warnings and applies the options; there is no renderer then. `preset`
+// is the quality if none is asked for. The exit status: 0, or that of a message on stderr; then
+// nothing needs closing.
+int cli_shot_load(const struct cli_shot_options *options, enum quality preset,
+                  struct shot *out_shot);
+
+// Starts the renderer of a loaded shot. If that fails, the shot is closed.
+int cli_shot_start(const struct cli_shot_options *options, struct shot *shot);
+
+// Both.
+int cli_shot_open(const struct cli_shot_options *options, enum quality preset,
+                  struct shot *out_shot);
+
+#endif
