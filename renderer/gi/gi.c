@@ -336,7 +336,7 @@ void gi_write_visibility_defines(const struct frame *frame,
 {
     bool rays = gi_traces_shadows(frame);
     snprintf(out_defines, GI_VISIBILITY_DEFINES_LENGTH,
-             "RAY_SHADOWS %d\nCONE_SHADOWS %d\nGATHER_STEP %u\nGATHERED_BEFORE_SHARES %u\n", rays,
+             "RAY_SHADOWS %d\nCONE_SHADOWS %d\nGATHER_STEP %u\nVISIBILITY_PLANE %u\n", rays,
              !rays && frame_has_cone_shadows(frame), gi_gather_step(frame),
              gi_accumulation_planes(frame));
 }

@@ -29,7 +29,7 @@ bool filter_accumulation(const struct frame *frame, bool specular, struct error 
         return true;
     char extra[48];
     uint32_t step = gi_gather_step(frame), pixels = step * GROUP_EDGE;
-    snprintf(extra, sizeof(extra), "GATHER_STEP %u\nGLOSS %d\n", step, specular);
+    snprintf(extra, sizeof(extra), "GATHER_STEP %u\nSPECULAR_LOBE %d\n", step, specular);
     const struct gpu_program *program =
         gpu_program_get(frame->gpu, "gi/accumulation_filter.comp", extra, out_error);
     if (!program)

@@ -18,7 +18,7 @@ static bool voxel_relight_run(struct frame *frame, const struct pass *pass, stru
     bool feeds = frame_has(frame, EFFECT_MULTI_BOUNCE) && volume->light.feeds;
     char extra[128];
     snprintf(extra, sizeof(extra),
-             "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nTAPS 4\nFEEDBACK %d\nFRESH %d\n", feeds,
+             "LIGHT_TILES 0\nSPECULAR 0\nBLINN_PHONG 0\nTAPS 4\nMULTI_BOUNCE %d\nFRESH %d\n", feeds,
              frame->light_work.fresh_only);
     const struct gpu_program *program = voxel_program(
         frame, pass,
