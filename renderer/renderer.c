@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "renderer/camera.h"
-#include "renderer/frame/finite_check.h"
+#include "renderer/finite_check.h"
 #include "renderer/frame/frame_block.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"

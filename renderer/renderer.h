@@ -11,21 +11,19 @@
 #include <stdint.h>
 
 #include "renderer/error.h"
+#include "renderer/finite_report.h"
+#include "renderer/frame/frame_params.h"
+#include "renderer/frame/frame_pixels.h"
+#include "renderer/frame/frame_statistics.h"
+#include "renderer/gpu/gpu_info.h"
+#include "renderer/import/scene_load.h"
 #include "renderer/log.h"
-#include "renderer/metrics/display.h"
-#include "renderer/metrics/heat_map.h"
-#include "renderer/metrics/image_metrics.h"
-#include "renderer/path_tracer/ray_bench.h"
 #include "renderer/path_tracer/reference.h"
 #include "renderer/scene/ray_scene.h"
 #include "renderer/scene/scene.h"
-#include "renderer/import/scene_load.h"
 #include "renderer/settings.h"
 
-#define RENDERER_MAX_VIEWS      64u
-#define RENDERER_MAX_PASSES     32u
-#define RENDERER_MAX_EFFECTS    32u
-#define RENDERER_FRAMES_IN_RING 3u
+#define RENDERER_MAX_VIEWS 64u
 
 struct renderer;
 struct view;
@@ -44,27 +42,10 @@ struct renderer_params {
     void *user;
 };
 
-struct renderer_info {
-    char gl_renderer[128];
-    char gl_version[128];
-    char egl_device[128];
-    bool software;   // llvmpipe or another CPU rasteriser
-    bool gpu_timers; // timer queries can be trusted for compute dispatches
-    uint32_t max_texture_edge;
-};
-
 // NULL with a message that names what is missing and what to install.
 struct renderer *renderer_create(const struct renderer_params *params, struct error *out_error);
 void renderer_destroy(struct renderer **renderer);
 const struct renderer_info *renderer_get_info(const struct renderer *renderer);
-
-// Faults of drivers and machines, for tests.
-enum renderer_fault {
-    RENDERER_FAULT_ALLOCATION, // of a buffer or texture: there is no more memory
-    RENDERER_FAULT_PROGRAM,    // of compiling shaders
-    RENDERER_FAULT_CONTEXT,    // of drawing a frame: the context is lost
-    RENDERER_FAULT_COUNT
-};
 
 // Makes the `number`th such event from now on fail, once; 0: none.
 void renderer_inject_fault(struct renderer *renderer, enum renderer_fault fault, uint64_t number);
@@ -88,26 +69,6 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
 struct view *renderer_view_create(struct renderer *renderer);
 void renderer_view_destroy(struct renderer *renderer, struct view **view);
 
-enum frame_output {
-    FRAME_OUTPUT_YCBCR,  // planar full-range BT.601 Y, Cb, Cr, 4:2:0, tonemapped: what JPEG wants
-    FRAME_OUTPUT_RGBA8,  // tonemapped sRGB, 4 bytes a pixel
-    FRAME_OUTPUT_LINEAR, // 4 floats a pixel: linear Rec.709 radiance in cd/m^2, no exposure
-};
-
-struct frame_params {
-    struct view_camera camera;
-    uint32_t width;
-    uint32_t height;
-    enum quality quality;
-    enum debug_view debug_view;
-    uint32_t debug_level;       // of the voxels that a debug view shows
-    enum voxel_face debug_face; // likewise
-    enum frame_output output;
-    struct render_settings settings;
-    bool own_voxels;  // shares none with other views, since its settings are not theirs
-    uint64_t user_id; // handed back with the pixels
-};
-
 enum render_result {
     RENDER_DRAWN,     // pixels will come by renderer_view_collect()
     RENDER_UNCHANGED, // nothing has changed and the picture has converged: nothing ran
@@ -127,80 +88,14 @@ bool renderer_admit_frame(const struct renderer *renderer);
 // Makes the next renderer_view_draw() draw everything anew even if nothing has changed.
 void renderer_view_invalidate(struct view *view);
 
-// Pictures in host memory. Row 0 at the top. Planes of FRAME_OUTPUT_YCBCR: Y of width x height,
-// Cb and Cr of (width+1)/2 x (height+1)/2; other outputs have one plane.
-struct frame_pixels {
-    uint64_t user_id;
-    uint32_t width;
-    uint32_t height;
-    enum frame_output output;
-    const uint8_t *planes[3];
-    uint32_t row_pitch_bytes[3];
-    uint32_t reference_samples; // per pixel, if the picture is a reference's; else 0
-    float reference_noise;      // standard error of a pixel over the mean luminance; 0: unknown
-    float convergence;    // 0 to 1: how far indirect light and averaging have come; 1 is final
-    double frame_time_ms; // wall time from the call of renderer_view_draw to the pixels being here,
-                          // but for that of renderer_params.yield
-};
-
 // The oldest finished frame, or false if none is ready (with `wait`: if none is under way). The
 // pixels stay valid until renderer_view_release() with the same view; collect one at a time.
 bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wait,
                            struct frame_pixels *out_pixels);
 void renderer_view_release(struct renderer *renderer, struct view *view);
 
-struct pass_statistics {
-    const char *name;
-    bool ran;           // in the newest frame
-    double time_ms;     // of the newest frame whose timers have arrived
-    const char *reason; // why it was skipped; "" when it ran
-};
-
-struct effect_statistics {
-    const char *name;
-    bool on;
-    char reason[96]; // in words, e.g. "no transparent material in the scene"
-};
-
-struct memory_statistics {
-    const char *name; // such as "textures", "geometry", "shadow_maps", "view_targets"
-    uint64_t bytes;
-};
-
-// Values that were wrong, or more than there is room for, and were clamped or left out.
-struct reject_statistics {
-    const char *name; // such as "triangles_left_out"
-    uint64_t count;
-};
-
-struct frame_statistics {
-    uint32_t pass_count;
-    struct pass_statistics passes[RENDERER_MAX_PASSES];
-    uint32_t effect_count;
-    struct effect_statistics effects[RENDERER_MAX_EFFECTS];
-    uint32_t memory_count;
-    struct memory_statistics memory[16];
-    uint32_t reject_count;
-    struct reject_statistics rejects[8];
-    double frame_time_ms; // of the newest collected frame
-    float exposure;       // scale in use
-    uint32_t render_width, render_height;
-};
-
 void renderer_view_get_statistics(const struct renderer *renderer, const struct view *view,
                                   struct frame_statistics *out_statistics);
-
-#define FINITE_MAX_RESOURCES 16u
-
-// What a look at the values that frames leave on the GPU has found.
-struct finite_report {
-    uint32_t count;
-    struct finite_resource {
-        const char *name;
-        uint32_t values; // that are infinite or no numbers
-        uint32_t first;  // word of the buffer, or texel, if there are any
-    } resources[FINITE_MAX_RESOURCES];
-};
 
 // Looks for values that are not finite in every floating-point resource that the view's newest
 // frame wrote, and in what it read of the scene. For tests: waits for the GPU; frames that nobody

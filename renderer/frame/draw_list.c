@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/scene/scene.h"
+
 bool draw_list_reserve(struct draw_list *list, const struct gpu_scene *gpu_scene)
 {
     uint32_t wanted = gpu_scene->cluster_count ? gpu_scene->cluster_count : 1;

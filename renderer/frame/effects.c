@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/scene/scene.h"
 
 static const struct {
     const char *name;

@@ -2,7 +2,10 @@
 #ifndef VOXCAST_RENDERER_FRAME_EFFECTS_H
 #define VOXCAST_RENDERER_FRAME_EFFECTS_H
 
-#include "renderer/renderer.h"
+#include <stddef.h>
+
+#include "renderer/frame/frame_params.h"
+#include "renderer/frame/frame_statistics.h"
 
 enum effect {
     EFFECT_TEXTURES,

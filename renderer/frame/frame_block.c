@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "renderer/camera.h"
-#include "renderer/passes/pass.h"
+#include "renderer/frame/frame.h"
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/gpu_scene/bvh.h"
 #include "renderer/frame/view.h"

@@ -3,9 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "renderer/gi/gi.h"
-#include "renderer/gi/volume.h"
-#include "renderer/passes/pass.h"
+#include "renderer/frame/frame.h"
 
 struct view *view_create(struct gpu *gpu)
 {
@@ -139,12 +137,12 @@ static bool prepare_indirect(struct view *view, const struct frame *frame)
 {
     bool done = true;
     uint32_t effect_bits = frame->plan.bits;
-    enum gather_mode gather = frame->volume ? gi_gather_mode(frame) : GATHER_CACHE;
-    uint32_t step = gi_gather_step(frame);
+    enum gather_mode gather = frame->volume ? frame_gather_mode(frame) : GATHER_CACHE;
+    uint32_t step = frame_gather_step(frame);
     size_t accumulation =
         (size_t)((view->width + step - 1) / step) * ((view->height + step - 1) / step);
-    accumulation *= gi_accumulation_planes(frame);
-    if (gi_wants_ray_shadows(frame))
+    accumulation *= frame_accumulation_planes(frame);
+    if (frame_wants_ray_shadows(frame))
         accumulation += (size_t)view->width * view->height;
     if (gather == GATHER_CACHE)
         gpu_buffer_destroy(&view->accumulation);
@@ -169,8 +167,8 @@ static float resolution_scale(const struct frame *frame)
         return 1.0f;
     // While light settles no picture lasts, so that those of a camera at rest are not supersampled
     // until it has; unless pixels are what asks for light.
-    bool settling = frame->volume && !frame->volume->light.converged &&
-                    !frame->visibility_changed && frame_has(frame, EFFECT_MULTI_BOUNCE);
+    bool settling = frame->volume && !frame->light_converged && !frame->visibility_changed &&
+                    frame_has(frame, EFFECT_MULTI_BOUNCE);
     if (settling)
         return fminf(frame->quality->resolution_scale, 1.0f);
     return frame->quality->resolution_scale;

@@ -4,6 +4,7 @@
 
 #include "renderer/frame/draw_list.h"
 #include "renderer/frame/effects.h"
+#include "renderer/frame/frame_pixels.h"
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu/timer.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "renderer/gi/cones.h"
-#include "renderer/passes/pass.h"
+#include "renderer/gi/light_hash.h"
 #include "renderer/frame/view.h"
 
 // Stored radiance of the brightest lit surface should lie about here, far from either end of what
@@ -16,14 +16,6 @@
 #define SCALE_DECAY  64.0f
 // Ambient occlusion counts what is nearer than this share of the scene's diagonal.
 #define OCCLUSION_FRACTION 0.05f
-// Pictures of a camera at rest that are averaged where pixels gather.
-#define CONE_PICTURES 4u
-// Fewer rays a pixel are noisier than the cache, which is shown instead.
-#define SHOWN_RAYS 16u
-// Above every roughness.
-#define ALL_ROUGHNESS 1.01f
-// Frames in a row that show nothing new while light settles.
-#define MAX_ACCUMULATE_ONLY_FRAMES 7u
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
@@ -233,20 +225,6 @@ static float radiance_scale(const struct gpu_scene *gpu_scene, float before)
     return suits ? before : scale;
 }
 
-static uint64_t hash_word(uint64_t hash, uint64_t word)
-{
-    return (hash ^ word) * 1099511628211ull;
-}
-
-static uint64_t hash_march(uint64_t hash, const struct cone_march *march)
-{
-    uint32_t words[sizeof(*march) / 4];
-    memcpy(words, march, sizeof(words));
-    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
-        hash = hash_word(hash, words[i]);
-    return hash;
-}
-
 // Of everything that the light in voxels depends on; nothing of a view's quality, since views of
 // different quality share a volume and would set it back in turns.
 static uint64_t light_key(const struct frame *frame, const struct voxel_volume *volume)
@@ -299,97 +277,11 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     block->indirect_intensity = settings->indirect_intensity;
 }
 
-enum gather_mode gi_gather_mode(const struct frame *frame)
-{
-    enum gather_mode chosen = frame->params->settings.gather_mode;
-    return chosen == GATHER_AUTO ? frame->quality->gather_mode : chosen;
-}
-
-uint32_t gi_gather_step(const struct frame *frame)
-{
-    enum gather_mode mode = gi_gather_mode(frame);
-    return mode == GATHER_HALF ? 2 : mode == GATHER_RAYS ? frame->quality->ray_step : 1;
-}
-
-uint32_t gi_accumulation_planes(const struct frame *frame)
-{
-    if (gi_gather_mode(frame) != GATHER_RAYS)
-        return 1;
-    return frame_has(frame, EFFECT_INDIRECT_SPECULAR) ? PLANES_WITH_SPECULAR
-                                                      : PLANES_WITHOUT_SPECULAR;
-}
-
-bool gi_wants_ray_shadows(const struct frame *frame)
-{
-    return frame->volume && gi_gather_mode(frame) == GATHER_RAYS &&
-           frame_has(frame, EFFECT_SOFT_SHADOWS) &&
-           frame->gpu_scene->counts.lights <= GI_MAX_RAY_LIGHTS;
-}
-
-bool gi_traces_shadows(const struct frame *frame)
-{
-    return gi_wants_ray_shadows(frame) && frame->gather == GATHER_RAYS;
-}
-
-void gi_write_visibility_defines(const struct frame *frame,
-                                 char out_defines[GI_VISIBILITY_DEFINES_LENGTH])
-{
-    bool rays = gi_traces_shadows(frame);
-    snprintf(out_defines, GI_VISIBILITY_DEFINES_LENGTH,
-             "RAY_SHADOWS %d\nCONE_SHADOWS %d\nGATHER_STEP %u\nVISIBILITY_PLANE %u\n", rays,
-             !rays && frame_has_cone_shadows(frame), gi_gather_step(frame),
-             gi_accumulation_planes(frame));
-}
-
-// While light settles for pictures that are dear to draw, a few frames only do that.
-static void converge_without_shading(struct frame *frame, const struct voxel_volume *volume)
-{
-    struct view *view = frame->view;
-    bool shown = frame->unchanged && !frame->light_work.voxelize &&
-                 view->shown_light == volume->light.version &&
-                 view->accumulate_only_count < MAX_ACCUMULATE_ONLY_FRAMES;
-    frame->accumulate_only = shown && gi_gather_mode(frame) == GATHER_RAYS;
-    view->accumulate_only_count = frame->accumulate_only ? view->accumulate_only_count + 1 : 0;
-    view->shown_light = volume->light.version;
-}
-
-static void show_cache(struct frame *frame)
-{
-    frame->gather = GATHER_CACHE;
-    frame->accumulated_samples = 0;
-    frame->view->accumulated_samples = 0;
-}
-
-// Whether the picture of before stays until rays are enough. Where bounces are counted the cache
-// holds one less than is shown and cannot stand in for rays.
-static bool keeps_last_image(const struct frame *frame, uint32_t count)
-{
-    uint32_t enough =
-        frame->accumulation_target < SHOWN_RAYS ? frame->accumulation_target : SHOWN_RAYS;
-    return frame->gather == GATHER_RAYS && count < enough && frame->params->settings.bounces == 0;
-}
-
-// One more picture of what pixels gather, or those of before if they are enough. What rays have
-// found is shown each time that their number has doubled, and with the last.
-static void accumulate_once(struct frame *frame, struct voxel_volume *volume)
-{
-    struct view *view = frame->view;
-    frame->accumulate = view->accumulated_samples < frame->accumulation_target;
-    view->accumulated_samples += frame->accumulate;
-    frame->accumulated_samples = view->accumulated_samples;
-    volume->uniforms.sample_count = (float)view->accumulated_samples;
-    bool doubled = (view->accumulated_samples & (view->accumulated_samples - 1)) == 0;
-    bool shown = view->accumulated_samples == frame->accumulation_target ||
-                 (doubled && !keeps_last_image(frame, view->accumulated_samples));
-    frame->accumulate_only =
-        frame->gather == GATHER_RAYS && frame->accumulate && frame->unchanged && !shown;
-}
-
 // Whether pixels read the cache rather than gather the last bounce themselves.
 static bool frame_shows_cache(const struct frame *frame)
 {
     enum debug_view view = frame->params->debug_view;
-    return gi_gather_mode(frame) == GATHER_CACHE || view == DEBUG_VIEW_VOXEL_IRRADIANCE ||
+    return frame_gather_mode(frame) == GATHER_CACHE || view == DEBUG_VIEW_VOXEL_IRRADIANCE ||
            view == DEBUG_VIEW_AMBIENT_OCCLUSION || view == DEBUG_VIEW_CACHE_AGE;
 }
 
@@ -403,7 +295,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 {
     frame->volume = NULL;
     frame->view->volume_serial = 0;
-    frame->gather = gi_gather_mode(frame);
+    frame->gather = frame_gather_mode(frame);
     if (!(frame->plan.bits & VOXEL_EFFECTS))
         return true;
     const struct render_settings *settings = &frame->params->settings;
@@ -433,46 +325,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         .trace_budget = gi->trace_budget,
     };
     voxel_light_begin(volume, &light, &frame->light_work);
+    frame->voxel_level_count = volume->level_count;
+    frame->light_converged = volume->light.converged;
     return true;
-}
-
-bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
-{
-    struct view *view = frame->view;
-    struct voxel_volume *volume = frame->volume;
-    if (!volume)
-        return true;
-    struct voxel_block *block = &volume->uniforms;
-    frame->accumulation_target = 1;
-    frame->accumulated_samples = 1;
-    if (frame->gather == GATHER_RAYS)
-        frame->accumulation_target = frame->quality->ray_pictures;
-    else if (frame->gather != GATHER_CACHE)
-        frame->accumulation_target = CONE_PICTURES;
-    if (frame->gather != GATHER_CACHE) {
-        uint64_t key = hash_march(volume->light.version, &block->pixel_march);
-        key = hash_word(key, view->volume_serial);
-        key = hash_word(key, (uint64_t)frame->gather);
-        // Of what nobody asked for nothing has been gathered.
-        key = hash_word(key, frame->plan.bits);
-        key = hash_word(key, (uint64_t)frame->params->debug_view);
-        if (frame->visibility_changed || frame->light_work.voxelize ||
-            key != view->accumulation_key)
-            view->accumulated_samples = 0;
-        view->accumulation_key = key;
-        if (!volume->light.converged) {
-            show_cache(frame);
-            converge_without_shading(frame, volume);
-        } else if (!frame->unchanged && keeps_last_image(frame, view->accumulated_samples)) {
-            show_cache(frame);
-        } else {
-            accumulate_once(frame, volume);
-        }
-    }
-    // One ray does for any lobe, so that all gloss has rays of its own where there are any.
-    bool rays = frame->gather == GATHER_RAYS;
-    block->specular_max_roughness = rays ? ALL_ROUGHNESS : frame->quality->specular_roughness;
-    block->specular_min_reflectance = rays ? 0.0f : frame->quality->specular_reflectance;
-    return !rays || !frame->accumulate || gpu_scene_need_tree(frame->gpu_scene) ||
-           error_set(out_error, "a tree of the scene's triangles does not fit into memory");
 }

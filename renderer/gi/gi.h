@@ -38,29 +38,6 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 // memory ends.
 bool gi_plan_accumulation(struct frame *frame, struct error *out_error);
 
-// How pixels of the frame gather in the end, as settings and quality say.
-enum gather_mode gi_gather_mode(const struct frame *frame);
-
-// Every how many-th pixel gathers, in both directions.
-uint32_t gi_gather_step(const struct frame *frame);
-
-// Rays ask each light of a scene, up to so many. Where there are more, what they meet is lit as
-// voxels are, and soft shadows are left to cones.
-#define GI_MAX_RAY_LIGHTS 16u
-
-// Pictures of what rays from pixels have found (GATHERED_ of shaders/shared/ray_accumulation.h) but
-// for shadows, which have all pixels.
-uint32_t gi_accumulation_planes(const struct frame *frame);
-
-// Whether shadows of lights that have a size are traced in the end; and in this frame shown.
-bool gi_wants_ray_shadows(const struct frame *frame);
-bool gi_traces_shadows(const struct frame *frame);
-
-// For shaders that write or read what those rays have found.
-#define GI_VISIBILITY_DEFINES_LENGTH 96
-void gi_write_visibility_defines(const struct frame *frame,
-                                 char out_defines[GI_VISIBILITY_DEFINES_LENGTH]);
-
 // Frees volumes that no view has drawn with last.
 void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count);
 

@@ -3,18 +3,8 @@
 #ifndef VOXCAST_RENDERER_GI_LIGHT_SCHEDULE_H
 #define VOXCAST_RENDERER_GI_LIGHT_SCHEDULE_H
 
+#include "renderer/frame/frame.h"
 #include "renderer/gi/volume.h"
-
-// What a frame of a view has to do for its volume.
-struct voxel_light_work {
-    bool voxelize;
-    bool relight;
-    bool direct;            // by lights, too, rather than by the cache alone
-    bool fresh_only;        // only cells that have not been lit before
-    uint32_t relight_first; // levels
-    uint32_t relight_end;
-    bool trace;
-};
 
 struct voxel_light_params {
     uint64_t key;      // of everything that light depends on, but for where the camera is

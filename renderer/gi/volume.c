@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/scene/scene.h"
+
 // A level's region moves in steps of so many voxels, so that those of the coarser level stay whole.
 #define SNAP_VOXELS 2
 // The coarsest level is larger than the scene by so many of its voxels. The third keeps surfaces of

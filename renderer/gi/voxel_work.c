@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "renderer/gi/volume.h"
+#include "renderer/scene/scene.h"
 
 // Up to so many instances each has surfels of its own; beyond, those of equal material share them,
 // so that no voxel's list grows without bound.

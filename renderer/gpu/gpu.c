@@ -11,6 +11,7 @@
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu/timer.h"
+#include "renderer/log.h"
 #include "shared/slots.h"
 
 #define GL_FENCE_WAIT_NS 2000000000ull

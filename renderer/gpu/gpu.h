@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "renderer/error.h"
-#include "renderer/renderer.h"
+#include "renderer/gpu/gpu_info.h"
 
 struct gpu;
 struct gpu_buffer;

@@ -8,6 +8,7 @@
 
 #include "renderer/gpu/internal.h"
 #include "renderer/gpu/shader_source.h"
+#include "renderer/log.h"
 
 #define MAX_PROGRAMS        256
 #define MAX_DEFINES         512

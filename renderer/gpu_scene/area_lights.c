@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/scene/scene.h"
 
 // Emissive primitives of more triangles (lights with shape) are not split up into planar emitters.
 #define MAX_EMITTER_TRIANGLES 12u

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/scene/scene.h"
 
 // A cone that is wider than this (cosine) tells nothing.
 #define MIN_CONE_COSINE 0.1f

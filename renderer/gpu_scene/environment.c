@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/scene/scene.h"
 #include "shared/environment_block.h"
 
 #define LEVEL_COUNT     6u

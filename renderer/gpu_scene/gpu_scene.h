@@ -7,6 +7,7 @@
 #include "renderer/gpu/gpu.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu_scene/shadow_map.h"
+#include "renderer/renderer.h"
 #include "shared/area_light_block.h"
 #include "shared/bvh.h"
 #include "shared/frame_block.h"

@@ -5,6 +5,7 @@
 
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/scene/placement.h"
+#include "renderer/scene/scene.h"
 
 #define MAX_SPOT_SHADOW_FOV 2.9f // radians; a wider cone gets a cube
 

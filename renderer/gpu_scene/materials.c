@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/scene/scene.h"
 
 static_assert(TEXTURE_SLOTS == SCENE_TEXTURE_SLOT_COUNT, "shaders and scene agree on slots");
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/scene/scene.h"
 
 #define UNUSED UINT32_MAX
 

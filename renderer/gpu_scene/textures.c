@@ -11,6 +11,8 @@
 #pragma GCC diagnostic pop
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/image/image.h"
+#include "renderer/scene/scene.h"
 
 #define MIN_CLASS_EDGE_LOG2    4  // 16 texels
 #define MAX_CLASS_EDGE_LOG2    12 // 4096 texels

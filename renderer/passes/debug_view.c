@@ -5,13 +5,6 @@
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
-uint32_t frame_debug_level(const struct frame *frame)
-{
-    uint32_t wanted = frame->params->debug_level;
-    uint32_t count = frame->volume ? frame->volume->level_count : 1;
-    return wanted < count ? wanted : count - 1;
-}
-
 // Levels beyond are mips, which hold light and opacity alone.
 static bool debug_level_has_cells(const struct frame *frame)
 {

@@ -18,8 +18,8 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
 {
     // The first pass to write radiance starts from the emission.
     bool first = environment_pass.skip_reason(frame) != NULL;
-    char extra[GI_VISIBILITY_DEFINES_LENGTH + 16], visibility[GI_VISIBILITY_DEFINES_LENGTH];
-    gi_write_visibility_defines(frame, visibility);
+    char extra[FRAME_VISIBILITY_DEFINES_LENGTH + 16], visibility[FRAME_VISIBILITY_DEFINES_LENGTH];
+    frame_write_visibility_defines(frame, visibility);
     snprintf(extra, sizeof(extra), "FIRST %d\n%s",
              frame->params->debug_view == DEBUG_VIEW_DIRECT ? 2 : first, visibility);
     const struct gpu_program *program =

@@ -1,5 +1,6 @@
 #include <stdio.h>
 
+#include "renderer/gi/volume.h"
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/timer.h"
 #include "renderer/passes/pass.h"

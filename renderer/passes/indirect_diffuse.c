@@ -20,7 +20,7 @@ static bool trace_pixel_rays(const struct frame *frame, struct error *out_error)
     const struct gpu_program *program = hit_program(frame, "gi/ray_diffuse.comp", out_error);
     if (!program)
         return false;
-    uint32_t pixels = gi_gather_step(frame) * GROUP_EDGE;
+    uint32_t pixels = frame_gather_step(frame) * GROUP_EDGE;
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
                  (frame->height + pixels - 1) / pixels, 1);
     gpu_barrier(frame->gpu);
@@ -34,7 +34,7 @@ static bool trace_pixel_cones(const struct frame *frame, const struct pass *pass
         voxel_program(frame, pass, "gi/pixel_cones.comp", extra, out_error);
     if (!program)
         return false;
-    uint32_t pixels = gi_gather_step(frame) * GROUP_EDGE;
+    uint32_t pixels = frame_gather_step(frame) * GROUP_EDGE;
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
                  (frame->height + pixels - 1) / pixels, 1);
     gpu_barrier(frame->gpu);
@@ -48,7 +48,7 @@ static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
     bool alone = frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;
     char extra[64];
     snprintf(extra, sizeof(extra), "CACHED %d\nGATHER_STEP %u\nFILTERED %d\nALONE %d\n", cached,
-             gi_gather_step(frame), rays, alone);
+             frame_gather_step(frame), rays, alone);
     if (!cached && frame->accumulate &&
         !(rays ? trace_pixel_rays(frame, out_error)
                : trace_pixel_cones(frame, pass, extra, out_error)))

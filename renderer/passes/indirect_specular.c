@@ -46,7 +46,8 @@ static bool add_specular_lobe(const struct frame *frame, const struct pass *pass
     bool rays = frame->gather == GATHER_RAYS;
     char extra[48];
     snprintf(extra, sizeof(extra), "SHARED %d\nRAYS %d\nGATHER_STEP %u\n",
-             frame->params->quality <= QUALITY_INTERACTIVE && !rays, rays, gi_gather_step(frame));
+             frame->params->quality <= QUALITY_INTERACTIVE && !rays, rays,
+             frame_gather_step(frame));
     const struct gpu_program *trace =
         voxel_program(frame, pass, "gi/indirect_specular.comp", extra, out_error);
     if (!trace)

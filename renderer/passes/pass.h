@@ -1,15 +1,12 @@
-// What a pass is, and what it is given to run. The list of passes is in passes/passes.c; the
-// executor (passes/executor.c) alone decides about order, timers, debug groups and skipping.
+// What a pass is, and what it is given to run. The
+// executor (passes/executor.c) has their list and alone decides about order, timers, debug groups
+// and skipping.
 #ifndef VOXCAST_RENDERER_PASSES_PASS_H
 #define VOXCAST_RENDERER_PASSES_PASS_H
 
-#include "renderer/frame/effects.h"
-#include "renderer/gi/light_schedule.h"
+#include "renderer/error.h"
+#include "renderer/frame/frame.h"
 #include "renderer/gpu/gpu.h"
-#include "renderer/renderer.h"
-
-struct gpu_scene;
-struct view;
 
 enum resource {
     RESOURCE_IDS,
@@ -36,49 +33,6 @@ struct resource_use {
     enum access access;
 };
 
-// One frame of one view on its way through the passes.
-struct frame {
-    struct gpu *gpu;
-    struct gpu_scene *gpu_scene;
-    struct view *view;
-    const struct frame_params *params;
-    struct view_camera camera; // that of `params`, but placed about the resident's origin
-    struct effect_plan plan;
-    const struct quality_level *quality;
-    uint32_t width; // rendered
-    uint32_t height;
-    uint32_t tiles_x;
-    uint32_t tiles_y;
-    bool visibility_changed;     // camera, size, geometry, placement or materials
-    struct voxel_volume *volume; // NULL where no effect needs voxels
-    struct voxel_light_work light_work;
-    enum gather_mode gather;
-    bool accumulate;                // pixels' cones are due; else what they found is still good
-    bool unchanged;                 // parameters and document are those of the frame before
-    bool accumulate_only;           // adds light or rays to those of before: the picture stays
-    uint32_t accumulation_target;   // pictures to average
-    uint32_t accumulated_samples;   // this one and those before it
-    const float *reference_picture; // 4 floats a pixel, shown instead; NULL for none
-};
-
-static inline bool frame_has(const struct frame *frame, enum effect effect)
-{
-    return (frame->plan.bits & EFFECT_BIT(effect)) != 0;
-}
-
-// Whether cones towards lights that have a size tell their shadows.
-static inline bool frame_has_cone_shadows(const struct frame *frame)
-{
-    return frame->volume && frame_has(frame, EFFECT_SOFT_SHADOWS) && frame->quality->cone_shadows;
-}
-
-// Whether pixels are lit directly: other debug views show something else.
-static inline bool frame_lights_pixels(const struct frame *frame)
-{
-    return frame->params->debug_view == DEBUG_VIEW_FINAL ||
-           frame->params->debug_view == DEBUG_VIEW_DIRECT;
-}
-
 // Whether the picture is of light, which goes through exposure and tone curve; else it is displayed
 // as it is.
 bool frame_shows_light(const struct frame *frame);
@@ -86,9 +40,6 @@ bool frame_shows_light(const struct frame *frame);
 // Why there is nothing that the debug view could show, so that the picture is plain grey; NULL if
 // there is.
 const char *frame_blank_reason(const struct frame *frame);
-
-// The voxel level that a debug view shows.
-uint32_t frame_debug_level(const struct frame *frame);
 
 struct pass {
     const char *name;

@@ -19,7 +19,7 @@ const struct gpu_program *hit_program(const struct frame *frame, const char *sha
 {
     char extra[128];
     snprintf(extra, sizeof(extra), "GATHER_STEP %u\nLIGHT_TILES 0\nSHADOW_TAPS 1u\nLIT_HITS %d\n",
-             gi_gather_step(frame), frame->gpu_scene->counts.lights <= GI_MAX_RAY_LIGHTS);
+             frame_gather_step(frame), frame->gpu_scene->counts.lights <= FRAME_MAX_RAY_LIGHTS);
     return voxel_program(frame, &shading_of_hits, shader, extra, out_error);
 }
 
@@ -28,7 +28,7 @@ bool filter_accumulation(const struct frame *frame, bool specular, struct error 
     if (frame->accumulate_only)
         return true;
     char extra[48];
-    uint32_t step = gi_gather_step(frame), pixels = step * GROUP_EDGE;
+    uint32_t step = frame_gather_step(frame), pixels = step * GROUP_EDGE;
     snprintf(extra, sizeof(extra), "GATHER_STEP %u\nSPECULAR_LOBE %d\n", step, specular);
     const struct gpu_program *program =
         gpu_program_get(frame->gpu, "gi/accumulation_filter.comp", extra, out_error);

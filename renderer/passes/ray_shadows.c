@@ -9,20 +9,20 @@ static const char *ray_shadows_skip_reason(const struct frame *frame)
         return frame->view->last_plan.reasons[EFFECT_SOFT_SHADOWS];
     if (!frame_lights_pixels(frame))
         return "the debug view shows no light";
-    if (!gi_traces_shadows(frame))
+    if (!frame_traces_shadows(frame))
         return "rays do not gather yet, or lamps are too many for them";
     return frame->accumulate ? NULL : "rays are enough";
 }
 
 static bool ray_shadows_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
-    char extra[GI_VISIBILITY_DEFINES_LENGTH];
-    gi_write_visibility_defines(frame, extra);
+    char extra[FRAME_VISIBILITY_DEFINES_LENGTH];
+    frame_write_visibility_defines(frame, extra);
     const struct gpu_program *program =
         voxel_program(frame, pass, "gi/ray_shadows.comp", extra, out_error);
     if (!program)
         return false;
-    uint32_t pixels = gi_gather_step(frame) * GROUP_EDGE;
+    uint32_t pixels = frame_gather_step(frame) * GROUP_EDGE;
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
                  (frame->height + pixels - 1) / pixels, 1);
     return true;

@@ -1,4 +1,5 @@
 // Copies the output, and the exposure behind it, into the ring of buffers that the host can read.
+#include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

@@ -6,7 +6,6 @@
 
 #include "server/accuracy/accuracy.h"
 #include "server/accuracy/picture_file.h"
-#include "server/tool/cli.h"
 #include "renderer/clock.h"
 
 #define SELF_LIT_MARGIN 2 // pixels, as far as resampling at draft quality reaches

@@ -9,7 +9,6 @@
 #include <sys/stat.h>
 
 #include "server/accuracy/accuracy.h"
-#include "server/tool/tool_options.h"
 
 #define MAX_OPEN_FILES 16
 

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/metrics/heat_map.h"
+#include "renderer/metrics/image_metrics.h"
 #include "server/accuracy/accuracy.h"
 #include "server/accuracy/converged_frames.h"
 #include "server/accuracy/picture_file.h"
-#include "server/tool/cli.h"
 #include "server/accuracy/bench_run.h"
 #include "server/accuracy/edit_latency.h"
 

@@ -15,6 +15,8 @@
 
 #include "server/accuracy/picture_file.h"
 
+#include "renderer/metrics/picture.h"
+
 #define JPEG_FILE_QUALITY 95
 
 bool picture_file_has_extension(const char *path, const char *extension)

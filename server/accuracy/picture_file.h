@@ -2,6 +2,7 @@
 #ifndef VOXCAST_SERVER_ACCURACY_PICTURE_FILE_H
 #define VOXCAST_SERVER_ACCURACY_PICTURE_FILE_H
 
+#include "renderer/metrics/picture.h"
 #include "renderer/renderer.h"
 
 // Writes pixels by the file's extension: .pfm (FRAME_OUTPUT_LINEAR), .png or .jpg

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/metrics/image_metrics.h"
 #include "server/accuracy/accuracy.h"
 #include "voxcast_paths.h"
 

@@ -5,7 +5,6 @@
 #include <turbojpeg.h>
 
 #include "protocol/limits.h"
-#include "server/stream/jpeg_workers.h"
 
 #define THUMBNAIL_QUALITY 85
 #define TAPS_PER_AXIS     8u

@@ -10,8 +10,8 @@
 #include "renderer/renderer.h"
 #include "server/render/accuracy_service.h"
 #include "server/stream/frame_stream.h"
-#include "server/network/mailbox.h"
-#include "server/network/outbox.h"
+#include "server/stream/mailbox.h"
+#include "server/stream/outbox.h"
 #include "server/render/render_thread.h"
 
 struct network;

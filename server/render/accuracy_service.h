@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 #include "renderer/renderer.h"
-#include "server/network/outbox.h"
+#include "server/stream/outbox.h"
 
 #define ACCURACY_ID_SIZE 33u // 32 hexadecimal digits
 

@@ -8,8 +8,8 @@
 #include "server/render/accuracy_service.h"
 #include "server/stream/frame_stream.h"
 #include "server/stream/jpeg_workers.h"
-#include "server/network/mailbox.h"
-#include "server/network/outbox.h"
+#include "server/stream/mailbox.h"
+#include "server/stream/outbox.h"
 
 struct render_thread;
 

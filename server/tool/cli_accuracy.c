@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "renderer/clock.h"
+#include "renderer/metrics/image_metrics.h"
 #include "server/accuracy/accuracy.h"
 #include "server/tool/cli.h"
 #include "server/tool/cli_bench.h"

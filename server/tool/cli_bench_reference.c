@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "renderer/clock.h"
+#include "renderer/path_tracer/ray_bench.h"
 #include "server/accuracy/bench_run.h"
 #include "server/accuracy/samples.h"
 #include "server/accuracy/shot.h"

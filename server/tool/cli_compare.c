@@ -4,6 +4,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "renderer/metrics/display.h"
+#include "renderer/metrics/heat_map.h"
+#include "renderer/metrics/image_metrics.h"
+#include "renderer/metrics/picture.h"
 #include "server/accuracy/bench_run.h"
 #include "server/accuracy/picture_file.h"
 #include "server/tool/cli.h"

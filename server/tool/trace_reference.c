@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "renderer/metrics/display.h"
+#include "renderer/metrics/picture.h"
 #include "server/accuracy/picture_file.h"
 #include "server/tool/cli.h"
 #include "renderer/clock.h"

@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include "renderer/metrics/display.h"
+#include "renderer/metrics/picture.h"
 #include "server/accuracy/converged_frames.h"
 #include "server/accuracy/picture_file.h"
 #include "server/accuracy/shot.h"

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "server/network/mailbox.h"
+#include "server/stream/mailbox.h"
 
 static struct command *make(enum method method, uint32_t client_id, uint32_t target,
                             uint64_t edit_id)

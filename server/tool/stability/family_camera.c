@@ -4,6 +4,7 @@
 
 #include "renderer/camera.h"
 #include "renderer/import/builtin/builtin.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 struct named_camera {

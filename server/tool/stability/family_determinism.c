@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 static void compare(struct stability_run *run, const struct picture *test,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "renderer/import/builtin/builtin.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 #define EMISSION 2.0

@@ -3,6 +3,7 @@
 // the renderer unable to draw what it drew before.
 #include <string.h>
 
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 // So many faults one after another are enough, whatever a scene needs.

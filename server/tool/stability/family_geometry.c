@@ -6,6 +6,7 @@
 
 #include "renderer/import/builtin/builtin.h"
 #include "renderer/image/image.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 // Above the box.

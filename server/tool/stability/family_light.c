@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "renderer/metrics/picture.h"
 #include "server/document/document.h"
 #include "server/document/document_text.h"
 #include "server/tool/stability/stage.h"

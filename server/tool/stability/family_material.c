@@ -5,6 +5,7 @@
 
 #include "renderer/import/builtin/builtin.h"
 #include "renderer/image/image.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 static uint32_t add_material(struct stage *stage, const struct scene_material *material)

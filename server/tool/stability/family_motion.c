@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/metrics/display.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 #define WALK_STEPS  24

@@ -4,6 +4,7 @@
 
 #include "renderer/camera.h"
 #include "renderer/import/builtin/builtin.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 static bool draw_stage(struct stability_run *run, const struct stage_params *placement,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "renderer/import/builtin/builtin.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
 #define HALF_EXTENT_M 2.0f

@@ -1,4 +1,6 @@
 // Runs cases: renderer, frames, pictures, and what is measured of them.
+#include "renderer/metrics/display.h"
+#include "renderer/metrics/picture.h"
 #include "server/accuracy/picture_file.h"
 #include "server/tool/stability/stability_internal.h"
 

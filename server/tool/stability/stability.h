@@ -6,6 +6,7 @@
 #ifndef VOXCAST_SERVER_TOOL_STABILITY_STABILITY_H
 #define VOXCAST_SERVER_TOOL_STABILITY_STABILITY_H
 
+#include "renderer/metrics/picture.h"
 #include "renderer/renderer.h"
 
 #define STABILITY_MAX_PICTURES 8u

@@ -2,6 +2,7 @@
 #ifndef VOXCAST_SERVER_TOOL_STABILITY_STABILITY_INTERNAL_H
 #define VOXCAST_SERVER_TOOL_STABILITY_STABILITY_INTERNAL_H
 
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stability.h"
 
 // One run of the suite.

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/metrics/display.h"
 #include "renderer/metrics/flip.h"
 #include "server/tool/stability/stability.h"
 

@@ -7,6 +7,7 @@
 #include <errno.h>
 
 #include "renderer/clock.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stability_internal.h"
 
 // "holds", "known" (misses its bound, but not what it is held to meanwhile) or "fails".

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "renderer/import/builtin/builtin.h"
+#include "renderer/metrics/picture.h"
 #include "server/tool/stability/stability_internal.h"
 
 #define LIGHT_CD 30.0f

@@ -1,4 +1,4 @@
-#include "renderer/frame/finite_check.h"
+#include "renderer/finite_check.h"
 
 #include <assert.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "server/network/outbox.h"
+#include "server/stream/outbox.h"
 
 #include <pthread.h>
 #include <stdlib.h>

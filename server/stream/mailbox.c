@@ -1,4 +1,4 @@
-#include "server/network/mailbox.h"
+#include "server/stream/mailbox.h"
 
 #include <pthread.h>
 #include <stdlib.h>

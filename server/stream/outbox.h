@@ -1,6 +1,6 @@
 // Text messages from the render thread to the network loop: bounded, in order, none lost.
-#ifndef VOXCAST_SERVER_NETWORK_OUTBOX_H
-#define VOXCAST_SERVER_NETWORK_OUTBOX_H
+#ifndef VOXCAST_SERVER_STREAM_OUTBOX_H
+#define VOXCAST_SERVER_STREAM_OUTBOX_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,11 +1,13 @@
 // Looks for values that are not finite in what a frame wrote and read: see renderer_check_finite().
-#ifndef VOXCAST_RENDERER_FRAME_FINITE_CHECK_H
-#define VOXCAST_RENDERER_FRAME_FINITE_CHECK_H
+#ifndef VOXCAST_RENDERER_FINITE_CHECK_H
+#define VOXCAST_RENDERER_FINITE_CHECK_H
 
-#include "renderer/renderer.h"
+#include "renderer/error.h"
+#include "renderer/finite_report.h"
 
 struct gpu;
 struct gpu_scene;
+struct view;
 struct voxel_volume;
 
 struct finite_check {

@@ -1,6 +1,6 @@
 // Commands from the network loop to the render thread: bounded, in order, newest per key wins.
-#ifndef VOXCAST_SERVER_NETWORK_MAILBOX_H
-#define VOXCAST_SERVER_NETWORK_MAILBOX_H
+#ifndef VOXCAST_SERVER_STREAM_MAILBOX_H
+#define VOXCAST_SERVER_STREAM_MAILBOX_H
 
 #include <stdbool.h>
 #include <stdint.h>

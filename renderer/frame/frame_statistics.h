@@ -1,0 +1,49 @@
+// What a frame did and what that took: plain data.
+#ifndef VOXCAST_RENDERER_FRAME_FRAME_STATISTICS_H
+#define VOXCAST_RENDERER_FRAME_FRAME_STATISTICS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define RENDERER_MAX_PASSES  32u
+#define RENDERER_MAX_EFFECTS 32u
+
+struct pass_statistics {
+    const char *name;
+    bool ran;           // in the newest frame
+    double time_ms;     // of the newest frame whose timers have arrived
+    const char *reason; // why it was skipped; "" when it ran
+};
+
+struct effect_statistics {
+    const char *name;
+    bool on;
+    char reason[96]; // in words, e.g. "no transparent material in the scene"
+};
+
+struct memory_statistics {
+    const char *name; // such as "textures", "geometry", "shadow_maps", "view_targets"
+    uint64_t bytes;
+};
+
+// Values that were wrong, or more than there is room for, and were clamped or left out.
+struct reject_statistics {
+    const char *name; // such as "triangles_left_out"
+    uint64_t count;
+};
+
+struct frame_statistics {
+    uint32_t pass_count;
+    struct pass_statistics passes[RENDERER_MAX_PASSES];
+    uint32_t effect_count;
+    struct effect_statistics effects[RENDERER_MAX_EFFECTS];
+    uint32_t memory_count;
+    struct memory_statistics memory[16];
+    uint32_t reject_count;
+    struct reject_statistics rejects[8];
+    double frame_time_ms; // of the newest collected frame
+    float exposure;       // scale in use
+    uint32_t render_width, render_height;
+};
+
+#endif

@@ -1,0 +1,100 @@
+// How pixels come by indirect light in a frame: from the cache, or by samples of their own, which
+// are accumulated while nothing moves.
+#include "renderer/frame/view.h"
+#include "renderer/gi/gi.h"
+#include "renderer/gi/light_hash.h"
+#include "renderer/gi/volume.h"
+
+// Frames in a row that show nothing new while light settles.
+#define MAX_ACCUMULATE_ONLY_FRAMES 7u
+// Fewer rays a pixel are noisier than the cache, which is shown instead.
+#define SHOWN_RAYS 16u
+// Pictures of a camera at rest that are averaged where pixels gather.
+#define CONE_PICTURES 4u
+// Above every roughness.
+#define ALL_ROUGHNESS 1.01f
+
+// While light settles for pictures that are dear to draw, a few frames only do that.
+static void converge_without_shading(struct frame *frame, const struct voxel_volume *volume)
+{
+    struct view *view = frame->view;
+    bool shown = frame->unchanged && !frame->light_work.voxelize &&
+                 view->shown_light == volume->light.version &&
+                 view->accumulate_only_count < MAX_ACCUMULATE_ONLY_FRAMES;
+    frame->accumulate_only = shown && frame_gather_mode(frame) == GATHER_RAYS;
+    view->accumulate_only_count = frame->accumulate_only ? view->accumulate_only_count + 1 : 0;
+    view->shown_light = volume->light.version;
+}
+
+static void show_cache(struct frame *frame)
+{
+    frame->gather = GATHER_CACHE;
+    frame->accumulated_samples = 0;
+    frame->view->accumulated_samples = 0;
+}
+
+// Whether the picture of before stays until rays are enough. Where bounces are counted the cache
+// holds one less than is shown and cannot stand in for rays.
+static bool keeps_last_image(const struct frame *frame, uint32_t count)
+{
+    uint32_t enough =
+        frame->accumulation_target < SHOWN_RAYS ? frame->accumulation_target : SHOWN_RAYS;
+    return frame->gather == GATHER_RAYS && count < enough && frame->params->settings.bounces == 0;
+}
+
+// One more picture of what pixels gather, or those of before if they are enough. What rays have
+// found is shown each time that their number has doubled, and with the last.
+static void accumulate_once(struct frame *frame, struct voxel_volume *volume)
+{
+    struct view *view = frame->view;
+    frame->accumulate = view->accumulated_samples < frame->accumulation_target;
+    view->accumulated_samples += frame->accumulate;
+    frame->accumulated_samples = view->accumulated_samples;
+    volume->uniforms.sample_count = (float)view->accumulated_samples;
+    bool doubled = (view->accumulated_samples & (view->accumulated_samples - 1)) == 0;
+    bool shown = view->accumulated_samples == frame->accumulation_target ||
+                 (doubled && !keeps_last_image(frame, view->accumulated_samples));
+    frame->accumulate_only =
+        frame->gather == GATHER_RAYS && frame->accumulate && frame->unchanged && !shown;
+}
+
+bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
+{
+    struct view *view = frame->view;
+    struct voxel_volume *volume = frame->volume;
+    if (!volume)
+        return true;
+    struct voxel_block *block = &volume->uniforms;
+    frame->accumulation_target = 1;
+    frame->accumulated_samples = 1;
+    if (frame->gather == GATHER_RAYS)
+        frame->accumulation_target = frame->quality->ray_pictures;
+    else if (frame->gather != GATHER_CACHE)
+        frame->accumulation_target = CONE_PICTURES;
+    if (frame->gather != GATHER_CACHE) {
+        uint64_t key = hash_march(volume->light.version, &block->pixel_march);
+        key = hash_word(key, view->volume_serial);
+        key = hash_word(key, (uint64_t)frame->gather);
+        // Of what nobody asked for nothing has been gathered.
+        key = hash_word(key, frame->plan.bits);
+        key = hash_word(key, (uint64_t)frame->params->debug_view);
+        if (frame->visibility_changed || frame->light_work.voxelize ||
+            key != view->accumulation_key)
+            view->accumulated_samples = 0;
+        view->accumulation_key = key;
+        if (!volume->light.converged) {
+            show_cache(frame);
+            converge_without_shading(frame, volume);
+        } else if (!frame->unchanged && keeps_last_image(frame, view->accumulated_samples)) {
+            show_cache(frame);
+        } else {
+            accumulate_once(frame, volume);
+        }
+    }
+    // One ray does for any lobe, so that all gloss has rays of its own where there are any.
+    bool rays = frame->gather == GATHER_RAYS;
+    block->specular_max_roughness = rays ? ALL_ROUGHNESS : frame->quality->specular_roughness;
+    block->specular_min_reflectance = rays ? 0.0f : frame->quality->specular_reflectance;
+    return !rays || !frame->accumulate || gpu_scene_need_tree(frame->gpu_scene) ||
+           error_set(out_error, "a tree of the scene's triangles does not fit into memory");
+}
