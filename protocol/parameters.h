@@ -1,7 +1,7 @@
 // The one table of parameters: what can be set, its type, range, unit, default and meaning.
 //
 // Validation, the browser's panel, the offline tool's --set and the table in PROTOCOL.md all come
-// from it. Pure data; any thread.
+// from it. Its rows are in parameters/*.def. Pure data; any thread.
 #ifndef VOXCAST_PROTOCOL_PARAMETERS_H
 #define VOXCAST_PROTOCOL_PARAMETERS_H
 
@@ -41,6 +41,15 @@ enum parameter_flags {
     PARAMETER_NONZERO = 2, // a vector that must have a length
 };
 
+#define PARAMETER_MAX_NEEDS 2u
+
+// What another parameter of the group must be for this one to have an effect.
+struct parameter_need {
+    const char *name; // NULL: none
+    uint32_t values;  // that will do: a bit for each place in `values` of an enum; bit 1 of a bool
+    const char *reason; // why this one rests where it is none of them, for people
+};
+
 struct parameter {
     enum parameter_group group;
     const char *name;
@@ -48,8 +57,9 @@ struct parameter {
     uint32_t flags;
     double min, max, step;     // of each component; 0, 0, 0 where the type has no range
     const char *unit;          // "" for none
-    const char *fallback;      // the default, as JSON
+    double fallback[4];        // the default, as the numbers of struct parameter_value
     const char *const *values; // of an enum, ended by NULL; else NULL
+    struct parameter_need needs[PARAMETER_MAX_NEEDS];
     const char *doc;
 };
 

@@ -158,7 +158,7 @@ static bool params_equal(const struct frame_params *a, const struct frame_params
            a->height == b->height && a->quality == b->quality && a->debug_view == b->debug_view &&
            a->debug_level == b->debug_level && a->debug_face == b->debug_face &&
            a->output == b->output && a->own_voxels == b->own_voxels &&
-           render_settings_equal(&a->settings, &b->settings);
+           render_settings_changes(&a->settings, &b->settings) == INVALIDATES_NOTHING;
 }
 
 static bool same_surfaces(const struct view *view, const struct frame_params *params,

@@ -1,50 +1,6 @@
 #include "renderer/settings.h"
 
-const char *const gi_method_names[GI_METHOD_COUNT] = {"none", "clipmap", "grid", "reference"};
-
-const char *const voxel_resolution_names[VOXEL_RESOLUTION_COUNT] = {"auto", "64", "128", "256"};
-
-const char *const voxel_directions_names[VOXEL_DIRECTIONS_COUNT] = {"anisotropic", "isotropic"};
-
-const char *const cone_set_names[CONE_SET_COUNT] = {"auto", "5", "6", "9", "16", "32"};
-
-const char *const gather_mode_names[GATHER_COUNT] = {"auto", "cache", "half", "pixel", "rays"};
-
-const char *const levels_per_frame_names[LEVELS_PER_FRAME_COUNT] = {"all", "one"};
-
-const char *const voxel_face_names[VOXEL_FACE_COUNT] = {"+x", "-x", "+y", "-y", "+z", "-z"};
-
-const char *const tonemap_names[TONEMAP_COUNT] = {"hable", "aces", "khronos_neutral", "none"};
-
-const char *const exposure_mode_names[EXPOSURE_MODE_COUNT] = {"automatic", "fixed"};
-
-const char *const shading_model_names[SHADING_MODEL_COUNT] = {"ggx", "blinn_phong"};
-
-const char *const debug_view_names[DEBUG_VIEW_COUNT] = {
-    "final",
-    "direct",
-    "albedo",
-    "normal",
-    "roughness",
-    "metallic",
-    "emission",
-    "depth",
-    "ids",
-    "lights_per_tile",
-    "shadow_cascades",
-    "voxel_opacity",
-    "voxel_albedo",
-    "voxel_normal",
-    "voxel_radiance",
-    "voxel_irradiance",
-    "indirect_diffuse",
-    "indirect_specular",
-    "ambient_occlusion",
-    "cache_age",
-    "tile_classes",
-};
-
-const char *const quality_names[QUALITY_COUNT] = {"draft", "interactive", "high", "final"};
+#include <stddef.h>
 
 const struct quality_level quality_levels[QUALITY_COUNT] = {
     [QUALITY_DRAFT] = {.resolution_scale = 0.5f,
@@ -99,35 +55,56 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
 void render_settings_init(struct render_settings *settings)
 {
     *settings = (struct render_settings){
-        .gi_method = GI_METHOD_CLIPMAP,
-        .indirect_intensity = 1.0f,
-        .soft_shadows = true,
-        .indirect_specular = true,
-        .refraction = true,
-        .environment_light = true,
-        .tonemap = TONEMAP_HABLE,
-        .exposure_mode = EXPOSURE_AUTOMATIC,
-        .shading_model = SHADING_MODEL_GGX,
-        .shadows = true,
+#define PARAMETER(record, name, type, range, unit, initial, ...) .name = initial,
+#include "protocol/parameters/settings.def"
+#undef PARAMETER
     };
 }
 
-bool render_settings_equal(const struct render_settings *a, const struct render_settings *b)
+uint32_t render_settings_changes(const struct render_settings *a, const struct render_settings *b)
 {
-    return a->gi_method == b->gi_method && a->voxel_resolution == b->voxel_resolution &&
-           a->voxel_directions == b->voxel_directions && a->clip_levels == b->clip_levels &&
-           a->cone_set == b->cone_set && a->cone_step == b->cone_step &&
-           a->gather_mode == b->gather_mode && a->bounces == b->bounces &&
-           a->indirect_intensity == b->indirect_intensity &&
-           a->ambient_occlusion == b->ambient_occlusion && a->soft_shadows == b->soft_shadows &&
-           a->indirect_specular == b->indirect_specular && a->refraction == b->refraction &&
-           a->environment_light == b->environment_light &&
-           a->voxelize_every_frame == b->voxelize_every_frame &&
-           a->levels_per_frame == b->levels_per_frame && a->tonemap == b->tonemap &&
-           a->exposure_mode == b->exposure_mode && a->exposure_ev == b->exposure_ev &&
-           a->gamma == b->gamma && a->shading_model == b->shading_model &&
-           a->shadows == b->shadows && a->force_all_effects == b->force_all_effects;
+    uint32_t changes = INVALIDATES_NOTHING;
+#define PARAMETER(record, name, type, range, unit, initial, handling, redraw, ...)                 \
+    if (a->name != b->name)                                                                        \
+        changes |= INVALIDATES_##redraw;
+#include "protocol/parameters/settings.def"
+#undef PARAMETER
+    return changes;
 }
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        hash = (hash ^ ((const uint8_t *)bytes)[i]) * 1099511628211ull;
+    return hash;
+}
+
+uint64_t render_settings_hash(const struct render_settings *settings, uint32_t parts)
+{
+    uint64_t hash = 14695981039346656037ull;
+#define PARAMETER(record, name, type, range, unit, initial, handling, redraw, ...)                 \
+    if (parts & INVALIDATES_##redraw)                                                              \
+        hash = hash_bytes(hash, &settings->name, sizeof(settings->name));
+#include "protocol/parameters/settings.def"
+#undef PARAMETER
+    return hash;
+}
+
+void render_settings_take(struct render_settings *settings, const struct render_settings *from,
+                          uint32_t parts)
+{
+#define PARAMETER(record, name, type, range, unit, initial, handling, redraw, ...)                 \
+    if (parts == INVALIDATES_##redraw)                                                             \
+        settings->name = from->name;
+#include "protocol/parameters/settings.def"
+#undef PARAMETER
+}
+
+// A setting that invalidates nothing would never reach the picture.
+#define PARAMETER(record, name, type, range, unit, initial, handling, redraw, ...)                 \
+    _Static_assert(INVALIDATES_##redraw != INVALIDATES_NOTHING, #name);
+#include "protocol/parameters/settings.def"
+#undef PARAMETER
 
 bool debug_view_needs_voxels(enum debug_view view)
 {

@@ -41,16 +41,27 @@ static void copy_name(char *target, size_t size, const char *name)
     snprintf(target, size, "%s", name ? name : "");
 }
 
+#define VECTOR(...)                                                                                \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
+#define EMPTY ""
+
+static void environment_init(struct scene_environment *environment)
+{
+    *environment = (struct scene_environment){
+#define PARAMETER(record, name, type, range, unit, initial, ...) .name = initial,
+#include "protocol/parameters/environment.def"
+#undef PARAMETER
+    };
+}
+
 struct scene *scene_create(const char *name)
 {
     struct scene *scene = calloc(1, sizeof(*scene));
     if (scene) {
         copy_name(scene->name, sizeof(scene->name), name);
-        scene->environment.intensity = 1.0f;
-        for (int c = 0; c < 3; c++) {
-            scene->environment.color[c] = 1.0f;
-            scene->environment.horizon_color[c] = 1.0f;
-        }
+        environment_init(&scene->environment);
     }
     return scene;
 }
@@ -94,17 +105,9 @@ void scene_destroy(struct scene **scene_slot)
 void scene_material_init(struct scene_material *material, const char *name)
 {
     *material = (struct scene_material){
-        .alpha_cutoff = 0.5f,
-        .base_color = {1.0f, 1.0f, 1.0f, 1.0f},
-        .metallic = 1.0f,
-        .roughness = 1.0f,
-        .normal_scale = 1.0f,
-        .occlusion_strength = 1.0f,
-        .emissive_strength = 1.0f,
-        .ior = 1.5f,
-        .specular = 1.0f,
-        .specular_color = {1.0f, 1.0f, 1.0f},
-        .attenuation_color = {1.0f, 1.0f, 1.0f},
+#define PARAMETER(record, name, type, range, unit, initial, ...) .name = initial,
+#include "protocol/parameters/material.def"
+#undef PARAMETER
     };
     copy_name(material->name, sizeof(material->name), name);
     for (int i = 0; i < SCENE_TEXTURE_SLOT_COUNT; i++) {
@@ -117,14 +120,14 @@ void scene_material_init(struct scene_material *material, const char *name)
 void scene_light_init(struct scene_light *light, enum scene_light_type type, const char *name)
 {
     *light = (struct scene_light){
-        .type = type,
-        .node = SCENE_NONE,
-        .enabled = true,
-        .casts_shadow = true,
-        .color = {1.0f, 1.0f, 1.0f},
-        .intensity = 1.0f,
-        .outer_cone_rad = (float)M_PI_4,
+#define LIGHT_DEFAULT(name, ...) .name = __VA_ARGS__,
+#define LIGHT_PLACEMENT_DEFAULT(name, ...)
+#define PARAMETER(record, name, type, range, unit, initial, ...) record##_DEFAULT(name, initial)
+#include "protocol/parameters/light.def"
+#undef PARAMETER
     };
+    light->type = type;
+    light->node = SCENE_NONE;
     copy_name(light->name, sizeof(light->name), name);
 }
 

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "renderer/parameter_types.h"
 #include "renderer/image/image.h"
 
 #define SCENE_NONE UINT32_MAX
@@ -37,19 +38,6 @@
 #define SCENE_KEPT_LIGHTS 256u
 
 enum scene_wrap { SCENE_WRAP_REPEAT, SCENE_WRAP_CLAMP_TO_EDGE, SCENE_WRAP_MIRRORED_REPEAT };
-
-enum scene_alpha_mode { SCENE_ALPHA_OPAQUE, SCENE_ALPHA_MASK, SCENE_ALPHA_BLEND };
-
-enum scene_shading { SCENE_SHADING_PBR, SCENE_SHADING_BLINN_PHONG, SCENE_SHADING_UNLIT };
-
-enum scene_light_type { SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT, SCENE_LIGHT_SPOT };
-
-enum scene_environment_type {
-    SCENE_ENVIRONMENT_NONE,
-    SCENE_ENVIRONMENT_CONSTANT,
-    SCENE_ENVIRONMENT_GRADIENT,
-    SCENE_ENVIRONMENT_EQUIRECT,
-};
 
 enum scene_animation_path { SCENE_PATH_TRANSLATION, SCENE_PATH_ROTATION, SCENE_PATH_SCALE };
 

@@ -15,11 +15,9 @@ struct light_record {
 };
 
 struct node_record {
-    char name[64];
-    float translation[3];
-    float rotation[4];
-    float scale[3];
-    bool visible;
+#define PARAMETER(record, name, type, ...) PARAMETER_FIELD(type, name)
+#include "protocol/parameters/node.def"
+#undef PARAMETER
 };
 
 union record {
@@ -33,146 +31,40 @@ union record {
     struct view_camera camera;
 };
 
-// Where the field of a parameter lies in the record of its group. Its type there follows from the
-// parameter's: float[], uint32_t, bool, an enum or char[64].
-struct binding {
-    enum parameter_group group;
-    const char *name;
-    size_t offset;
+// Where the table's records lie in the record of their group.
+#define LIGHT_POSITION(name)        light.light.name
+#define LIGHT_PLACEMENT_PLACE(name) light.name
+#define MATERIAL_PLACE(name)        material.name
+#define NODE_PLACE(name)            node.name
+#define ENVIRONMENT_PLACE(name)     environment.name
+#define SETTINGS_PLACE(name)        settings.name
+#define ANIMATION_PLACE(name)       animation.name
+#define VIEW_PLACE(name)            view.name
+#define CAMERA_PLACE(name)          camera.name
+
+// Where each parameter's field lies in there, in the order of the table.
+#define OFFSET(record_name, name) offsetof(union record, record_name##_PLACE(name)),
+static const size_t offsets[] = {
+#define PARAMETER(record, name, ...) OFFSET(record, name)
+#include "protocol/parameters/parameters.def"
+#undef PARAMETER
 };
 
-#define LIGHT(field)                                                                               \
-    {                                                                                              \
-        GROUP_LIGHT, #field, offsetof(struct light_record, light.field)                            \
-    }
-#define LIGHT_POSITION(field)                                                                      \
-    {                                                                                              \
-        GROUP_LIGHT, #field, offsetof(struct light_record, field)                                  \
-    }
-#define MATERIAL(field)                                                                            \
-    {                                                                                              \
-        GROUP_MATERIAL, #field, offsetof(struct scene_material, field)                             \
-    }
-#define NODE(field)                                                                                \
-    {                                                                                              \
-        GROUP_NODE, #field, offsetof(struct node_record, field)                                    \
-    }
-#define ENVIRONMENT(field)                                                                         \
-    {                                                                                              \
-        GROUP_ENVIRONMENT, #field, offsetof(struct scene_environment, field)                       \
-    }
-#define SETTINGS(field)                                                                            \
-    {                                                                                              \
-        GROUP_SETTINGS, #field, offsetof(struct render_settings, field)                            \
-    }
-#define ANIMATION(field)                                                                           \
-    {                                                                                              \
-        GROUP_ANIMATION, #field, offsetof(struct animation_state, field)                           \
-    }
-#define VIEW(field)                                                                                \
-    {                                                                                              \
-        GROUP_VIEW, #field, offsetof(struct view_options, field)                                   \
-    }
-#define CAMERA(field)                                                                              \
-    {                                                                                              \
-        GROUP_CAMERA, #field, offsetof(struct view_camera, field)                                  \
-    }
+// Its type there is the one that read_field() and write_field() take it for.
+#define CHECK_TYPE(record_name, name, type)                                                        \
+    _Static_assert(_Generic(&((union record *)0)->record_name##_PLACE(name),                       \
+                            PARAMETER_ELEMENT_##type(*) PARAMETER_EXTENT_##type                    \
+                            : true, default                                                        \
+                            : false),                                                              \
+                   "the field has another type than the row: " #record_name "." #name);
+#define PARAMETER(record, name, type, ...) CHECK_TYPE(record, name, type)
+#include "protocol/parameters/parameters.def"
+#undef PARAMETER
+_Static_assert(PARAMETER_NAME_BYTES == PROTOCOL_MAX_NAME_BYTES + 1, "names fit");
 
-static const struct binding bindings[] = {
-    LIGHT(name),
-    LIGHT(type),
-    LIGHT(enabled),
-    LIGHT(casts_shadow),
-    LIGHT(color),
-    LIGHT(intensity),
-    LIGHT(range_m),
-    LIGHT(inner_cone_rad),
-    LIGHT(outer_cone_rad),
-    LIGHT(radius_m),
-    LIGHT_POSITION(position),
-    LIGHT_POSITION(direction),
-    MATERIAL(name),
-    MATERIAL(shading),
-    MATERIAL(alpha_mode),
-    MATERIAL(alpha_cutoff),
-    MATERIAL(double_sided),
-    MATERIAL(base_color),
-    MATERIAL(metallic),
-    MATERIAL(roughness),
-    MATERIAL(normal_scale),
-    MATERIAL(occlusion_strength),
-    MATERIAL(emissive),
-    MATERIAL(emissive_strength),
-    MATERIAL(ior),
-    MATERIAL(specular),
-    MATERIAL(specular_color),
-    MATERIAL(transmission),
-    MATERIAL(thickness_m),
-    MATERIAL(attenuation_distance_m),
-    MATERIAL(attenuation_color),
-    NODE(name),
-    NODE(translation),
-    NODE(rotation),
-    NODE(scale),
-    NODE(visible),
-    ENVIRONMENT(type),
-    ENVIRONMENT(intensity),
-    ENVIRONMENT(color),
-    ENVIRONMENT(horizon_color),
-    ENVIRONMENT(ground_color),
-    ENVIRONMENT(rotation_rad),
-    SETTINGS(gi_method),
-    SETTINGS(voxel_resolution),
-    SETTINGS(voxel_directions),
-    SETTINGS(clip_levels),
-    SETTINGS(cone_set),
-    SETTINGS(cone_step),
-    SETTINGS(gather_mode),
-    SETTINGS(bounces),
-    SETTINGS(indirect_intensity),
-    SETTINGS(ambient_occlusion),
-    SETTINGS(soft_shadows),
-    SETTINGS(indirect_specular),
-    SETTINGS(refraction),
-    SETTINGS(environment_light),
-    SETTINGS(voxelize_every_frame),
-    SETTINGS(levels_per_frame),
-    SETTINGS(tonemap),
-    SETTINGS(exposure_mode),
-    SETTINGS(exposure_ev),
-    SETTINGS(gamma),
-    SETTINGS(shading_model),
-    SETTINGS(shadows),
-    SETTINGS(force_all_effects),
-    ANIMATION(playing),
-    ANIMATION(time_s),
-    ANIMATION(speed),
-    ANIMATION(loop),
-    VIEW(width),
-    VIEW(height),
-    VIEW(quality),
-    VIEW(adaptive),
-    VIEW(target_frame_ms),
-    VIEW(debug_view),
-    VIEW(debug_level),
-    VIEW(debug_face),
-    VIEW(paused),
-    VIEW(configuration),
-    CAMERA(eye),
-    CAMERA(target),
-    CAMERA(up),
-    CAMERA(fov_y_rad),
-};
-
-static size_t find_offset(const struct parameter *parameter)
+static void *field_of(const union record *record, const struct parameter *parameter)
 {
-    size_t count = sizeof(bindings) / sizeof(bindings[0]);
-    size_t i = 0;
-    while (i < count && (bindings[i].group != parameter->group ||
-                         strcmp(bindings[i].name, parameter->name) != 0))
-        i++;
-    assert(i < count); // a test holds table and bindings together
-    return bindings[i].offset;
+    return (char *)record + offsets[parameter - parameter_at(0)];
 }
 
 static void read_field(const void *field, const struct parameter *parameter,
@@ -316,22 +208,31 @@ static void store_record(const struct document *document, enum parameter_group g
     }
 }
 
+#define VECTOR(...)                                                                                \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
+#define EMPTY ""
+
 void view_options_init(struct view_options *view)
 {
     *view = (struct view_options){
-        .width = 640,
-        .height = 360,
-        .quality = QUALITY_FINAL,
-        .adaptive = true,
-        .target_frame_ms = 100,
-        .debug_view = DEBUG_VIEW_FINAL,
-        .camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .fov_y_rad = 0.785398f},
+#define PARAMETER(record, name, type, range, unit, initial, ...) .name = initial,
+#include "protocol/parameters/view.def"
+#undef PARAMETER
+#define PARAMETER(record, name, type, range, unit, initial, ...) .camera.name = initial,
+#include "protocol/parameters/camera.def"
+#undef PARAMETER
     };
 }
 
 void animation_state_init(struct animation_state *state)
 {
-    *state = (struct animation_state){.speed = 1.0f, .loop = true};
+    *state = (struct animation_state){
+#define PARAMETER(record, name, type, range, unit, initial, ...) .name = initial,
+#include "protocol/parameters/animation.def"
+#undef PARAMETER
+    };
 }
 
 uint32_t document_count(const struct document *document, enum parameter_group group)
@@ -380,7 +281,7 @@ void document_get(const struct document *document, const struct parameter *param
 {
     union record record;
     load_record(document, parameter->group, id, &record);
-    read_field((const char *)&record + find_offset(parameter), parameter, out_value);
+    read_field(field_of(&record, parameter), parameter, out_value);
 }
 
 static void normalize(struct parameter_value *value)
@@ -428,7 +329,7 @@ bool document_set(const struct document *document, enum parameter_group group, u
     for (uint32_t i = 0; i < value_count; i++) {
         if (values[i].parameter->flags & PARAMETER_NONZERO)
             normalize(&values[i]);
-        write_field((char *)&record + find_offset(values[i].parameter), &values[i]);
+        write_field(field_of(&record, values[i].parameter), &values[i]);
     }
     if (!check_record(group, &record, out_error))
         return false;

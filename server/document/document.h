@@ -11,26 +11,19 @@
 #include "protocol/parameter_value.h"
 #include "renderer/renderer.h"
 
-// What one client's view is beside the shared document.
+// What one client's view is beside the shared document; the rows of parameters/view.def.
 struct view_options {
-    uint32_t width;
-    uint32_t height;
-    enum quality quality; // of a still picture, if adaptive; else of every one
-    bool adaptive;
-    uint32_t target_frame_ms;
-    enum debug_view debug_view;
-    uint32_t debug_level;
-    enum voxel_face debug_face;
-    bool paused;
-    char configuration[PROTOCOL_MAX_NAME_BYTES + 1]; // of a measurement; "" for the shared settings
+#define PARAMETER(record, name, type, ...) PARAMETER_FIELD(type, name)
+#include "protocol/parameters/view.def"
+#undef PARAMETER
     struct view_camera camera;
 };
 
+// The rows of parameters/animation.def.
 struct animation_state {
-    bool playing;
-    float time_s;
-    float speed;
-    bool loop;
+#define PARAMETER(record, name, type, ...) PARAMETER_FIELD(type, name)
+#include "protocol/parameters/animation.def"
+#undef PARAMETER
 };
 
 // The places that values go to; not owned. A group whose place is NULL cannot be addressed.

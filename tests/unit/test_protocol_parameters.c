@@ -1,4 +1,4 @@
-// Proves that the table of parameters is sound and that PROTOCOL.md and the renderer's names keep
+// Proves that the table of parameters is sound and that PROTOCOL.md and the renderer's limits keep
 // in step with it: walks all rows, reads each default back, and looks rows up in the document.
 #include <setjmp.h>
 #include <stdarg.h>
@@ -58,8 +58,9 @@ static void defaults_are_valid(void **state)
 {
     (void)state;
     for (size_t i = 0; i < parameter_count(); i++) {
-        cJSON *item = cJSON_Parse(parameter_at(i)->fallback);
-        struct parameter_value value;
+        struct parameter_value fallback = {.parameter = parameter_at(i)}, value;
+        memcpy(fallback.numbers, parameter_at(i)->fallback, sizeof(fallback.numbers));
+        cJSON *item = parameter_value_to_json(&fallback);
         struct rpc_error error;
         if (!item || !parameter_value_from_json(parameter_at(i), item, &value, &error))
             fail_msg("default of %s", parameter_at(i)->name);
@@ -78,34 +79,39 @@ static void names_are_unique(void **state)
                          parameter_at(i));
 }
 
-static void check_names(const char *group_name, const char *name, const char *const *names,
-                        uint32_t count)
-{
-    enum parameter_group group = GROUP_LIGHT;
-    while (strcmp(parameter_group_names[group], group_name) != 0)
-        group++;
-    const struct parameter *parameter = parameter_find(group, name);
-    assert_non_null(parameter);
-    assert_int_equal(parameter_value_count(parameter), count);
-    for (uint32_t i = 0; i < count; i++)
-        assert_string_equal(parameter->values[i], names[i]);
-}
-
-static void enums_match_the_renderer(void **state)
+// What needs another parameter names one of its group, some of its values but not all, and why.
+static void needs_can_be_met_and_missed(void **state)
 {
     (void)state;
-    check_names("settings", "gi_method", gi_method_names, GI_METHOD_COUNT);
-    check_names("settings", "voxel_resolution", voxel_resolution_names, VOXEL_RESOLUTION_COUNT);
-    check_names("settings", "voxel_directions", voxel_directions_names, VOXEL_DIRECTIONS_COUNT);
-    check_names("settings", "cone_set", cone_set_names, CONE_SET_COUNT);
-    check_names("settings", "gather_mode", gather_mode_names, GATHER_COUNT);
-    check_names("settings", "levels_per_frame", levels_per_frame_names, LEVELS_PER_FRAME_COUNT);
-    check_names("settings", "tonemap", tonemap_names, TONEMAP_COUNT);
-    check_names("settings", "exposure_mode", exposure_mode_names, EXPOSURE_MODE_COUNT);
-    check_names("settings", "shading_model", shading_model_names, SHADING_MODEL_COUNT);
-    check_names("view", "debug_view", debug_view_names, DEBUG_VIEW_COUNT);
-    check_names("view", "debug_face", voxel_face_names, VOXEL_FACE_COUNT);
-    check_names("view", "quality", quality_names, QUALITY_COUNT);
+    for (size_t i = 0; i < parameter_count(); i++) {
+        const struct parameter *parameter = parameter_at(i);
+        for (uint32_t n = 0; n < PARAMETER_MAX_NEEDS && parameter->needs[n].name; n++) {
+            const struct parameter_need *need = &parameter->needs[n];
+            const struct parameter *needed = parameter_find(parameter->group, need->name);
+            if (!needed)
+                fail_msg("%s needs %s, which is not there", parameter->name, need->name);
+            uint32_t count = needed->type == PARAMETER_BOOL ? 2 : parameter_value_count(needed);
+            assert_in_range(count, 2, 31);
+            assert_true(need->values > 0 && need->values < (1u << count) - 1);
+            assert_true(strlen(need->reason) > 0);
+        }
+    }
+}
+
+static void needs_reach_the_client(void **state)
+{
+    (void)state;
+    cJSON *table = parameters_to_json();
+    size_t i = (size_t)(parameter_find(GROUP_SETTINGS, "cone_step") - parameter_at(0));
+    cJSON *row = cJSON_GetArrayItem(table, (int)i);
+    char *text = cJSON_PrintUnformatted(cJSON_GetObjectItem(row, "needs"));
+    assert_string_equal(text, "[{\"name\":\"gi_method\",\"in\":[\"clipmap\",\"grid\","
+                              "\"reference\"],\"reason\":\"needs a method\"},"
+                              "{\"name\":\"gi_method\",\"in\":[\"clipmap\",\"grid\"],"
+                              "\"reason\":\"voxels only\"}]");
+    free(text);
+    assert_null(cJSON_GetObjectItem(cJSON_GetArrayItem(table, 0), "needs"));
+    cJSON_Delete(table);
 }
 
 static void check_range(const char *name, double max)
@@ -181,7 +187,8 @@ int main(void)
         cmocka_unit_test(document_holds_no_other_row),
         cmocka_unit_test(defaults_are_valid),
         cmocka_unit_test(names_are_unique),
-        cmocka_unit_test(enums_match_the_renderer),
+        cmocka_unit_test(needs_can_be_met_and_missed),
+        cmocka_unit_test(needs_reach_the_client),
         cmocka_unit_test(ranges_match_the_renderer),
         cmocka_unit_test(wrong_values_are_refused),
         cmocka_unit_test(text_is_read_as_people_type_it),

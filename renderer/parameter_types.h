@@ -1,0 +1,70 @@
+// The table of parameters as types of C: enums and their names, and the macros by which structs and
+// defaults are made from rows. Plain data.
+#ifndef VOXCAST_RENDERER_PARAMETER_TYPES_H
+#define VOXCAST_RENDERER_PARAMETER_TYPES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define ENUM_BEGIN(name)           enum name {
+#define ENUM_VALUE(constant, text) constant,
+#define ENUM_END(name, count)                                                                      \
+    count                                                                                          \
+    }                                                                                              \
+    ;
+#include "protocol/parameters/enums.def"
+#undef ENUM_BEGIN
+#undef ENUM_VALUE
+#undef ENUM_END
+
+// Names as the protocol and the command line spell them: gi_method_names[GI_METHOD_GRID] is "grid".
+#define ENUM_BEGIN(name)
+#define ENUM_VALUE(constant, text)
+#define ENUM_END(name, count) extern const char *const name##_names[count];
+#include "protocol/parameters/enums.def"
+#undef ENUM_BEGIN
+#undef ENUM_VALUE
+#undef ENUM_END
+
+// What has to be drawn again where a parameter differs.
+enum invalidation {
+    INVALIDATES_NOTHING = 0,
+    INVALIDATES_SURFACES = 1 << 0,     // what pixels see: ids, depth, G-buffer
+    INVALIDATES_LIGHT = 1 << 1,        // light in voxels
+    INVALIDATES_ACCUMULATION = 1 << 2, // what pixels have gathered at rest, summed over pictures
+    INVALIDATES_SHADING = 1 << 3,      // radiance of pixels, from the above
+    INVALIDATES_DISPLAY = 1 << 4,      // exposure and tone curve: the picture, from radiance
+
+    // A part with those that are made from it.
+    INVALIDATES_FROM_DISPLAY = INVALIDATES_DISPLAY,
+    INVALIDATES_FROM_SHADING = INVALIDATES_SHADING | INVALIDATES_FROM_DISPLAY,
+    INVALIDATES_FROM_ACCUMULATION = INVALIDATES_ACCUMULATION | INVALIDATES_FROM_SHADING,
+    INVALIDATES_FROM_LIGHT = INVALIDATES_LIGHT | INVALIDATES_FROM_ACCUMULATION,
+    INVALIDATES_FROM_SURFACES = INVALIDATES_SURFACES | INVALIDATES_FROM_ACCUMULATION,
+    INVALIDATES_EVERYTHING = INVALIDATES_SURFACES | INVALIDATES_FROM_LIGHT,
+};
+
+#define PARAMETER_NAME_BYTES 64u // of a string, with its end
+
+// PARAMETER_FIELD(type, name) declares the field of a parameter of that type.
+#define PARAMETER_FIELD(type, name)   PARAMETER_ELEMENT_##type name PARAMETER_EXTENT_##type;
+#define PARAMETER_ELEMENT_FLOAT       float
+#define PARAMETER_ELEMENT_INT         uint32_t
+#define PARAMETER_ELEMENT_BOOL        bool
+#define PARAMETER_ELEMENT_ENUM(name)  enum name
+#define PARAMETER_ELEMENT_STRING      char
+#define PARAMETER_ELEMENT_VEC3        float
+#define PARAMETER_ELEMENT_COLOR       float
+#define PARAMETER_ELEMENT_COLOR_ALPHA float
+#define PARAMETER_ELEMENT_QUATERNION  float
+#define PARAMETER_EXTENT_FLOAT
+#define PARAMETER_EXTENT_INT
+#define PARAMETER_EXTENT_BOOL
+#define PARAMETER_EXTENT_ENUM(name)
+#define PARAMETER_EXTENT_STRING      [PARAMETER_NAME_BYTES]
+#define PARAMETER_EXTENT_VEC3        [3]
+#define PARAMETER_EXTENT_COLOR       [3]
+#define PARAMETER_EXTENT_COLOR_ALPHA [4]
+#define PARAMETER_EXTENT_QUATERNION  [4]
+
+#endif
