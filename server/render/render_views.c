@@ -248,10 +248,7 @@ static void apply_configuration(const struct configuration_override *configurati
                                 struct frame_params *params)
 {
     struct render_settings settings = configuration->settings;
-    settings.tonemap = params->settings.tonemap;
-    settings.exposure_mode = params->settings.exposure_mode;
-    settings.exposure_ev = params->settings.exposure_ev;
-    settings.gamma = params->settings.gamma;
+    render_settings_take(&settings, &params->settings, INVALIDATES_DISPLAY);
     params->settings = settings;
     params->own_voxels = true;
     double scale = configuration->scale;
