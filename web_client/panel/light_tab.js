@@ -1,9 +1,9 @@
 import { element } from '../ui/element.js';
 import { icon } from '../ui/icon.js';
 import { srgbFromLinear } from '../math/color.js';
-import { isGiSetting } from './gi_rules.js';
 import { addParameterControls } from './parameter_controls.js';
 import { wordsOf } from './labels.js';
+import { isGiSetting } from './render_tab.js';
 import { makeSection } from './sections.js';
 
 /** @typedef {import('./app_context.js').AppContext} AppContext */
@@ -44,7 +44,7 @@ export class LightTab {
     ].map(([group, title]) =>
       addParameterControls(
         makeSection(this.shared, title),
-        app.parameters(group).filter(({ name }) => !isGiSetting(name)),
+        app.parameters(group).filter((parameter) => !isGiSetting(parameter)),
         app.target(group),
       ),
     );

@@ -16,6 +16,8 @@ import { VectorController } from './vector_controller.js';
  * @property {any} default
  * @property {string[]} [values]
  * @property {boolean} live
+ * @property {{name: string, in: any[], reason: string}[]} [needs] what others of its group must be
+ *   for it to have an effect
  * @property {string} doc
  */
 
@@ -23,8 +25,14 @@ import { VectorController } from './vector_controller.js';
  * @typedef {object} Target what the controls show and change
  * @property {(name: string) => any} get
  * @property {(name: string, value: any, transient: boolean) => void} set
- * @property {(name: string) => string} [whyRests] why a value has no effect now; "" if it has
  */
+
+/**
+ * Why a parameter has no effect beside the others of its group; "" if it has.
+ * @param {Parameter} parameter @param {Target} target
+ */
+const whyRests = ({ needs = [] }, target) =>
+  needs.find((need) => !need.in.includes(target.get(need.name)))?.reason ?? '';
 
 const MOST_SLIDER_STEPS = 1001;
 const DEGREES = 180 / Math.PI;
@@ -127,8 +135,9 @@ function choiceOf(/** @type {string} */ value) {
 }
 
 /** A value that has no effect now is not to be changed, and says why. */
-function showWhyRests(/** @type {any} */ controller, /** @type {Parameter} */ { name, doc }, /** @type {Target} */ target) {
-  const why = target.whyRests?.(name) ?? '';
+function showWhyRests(/** @type {any} */ controller, /** @type {Parameter} */ parameter, /** @type {Target} */ target) {
+  const { doc } = parameter;
+  const why = whyRests(parameter, target);
   if (controller.domElement.dataset.why === why) return;
   controller.domElement.dataset.why = why;
   controller.domElement.title = why ? `${doc} Has no effect now: ${why}.` : doc;

@@ -1,11 +1,17 @@
 import { element } from '../ui/element.js';
 import { makeEffectList, showEffects } from './effect_list.js';
-import { isGiSetting, whyGiSettingRests, whyViewOptionRests } from './gi_rules.js';
 import { addParameterControls } from './parameter_controls.js';
 import { makeSection } from './sections.js';
 
 const QUALITY_OPTIONS = ['quality', 'adaptive', 'target_frame_ms'];
 const DEBUG_OPTIONS = ['debug_view', 'debug_level', 'debug_face'];
+
+/**
+ * Whether a setting is one of global illumination: the method, and what has an effect with some only.
+ * @param {import('./parameter_controls.js').Parameter} parameter of the group settings
+ */
+export const isGiSetting = ({ name, needs = [] }) =>
+  name === 'gi_method' || needs.some((need) => need.name === 'gi_method');
 
 /** Whether this tab shows an option of the view. @param {string} name */
 export const isRenderOption = (name) => QUALITY_OPTIONS.includes(name) || DEBUG_OPTIONS.includes(name);
@@ -42,7 +48,6 @@ export class RenderTab {
         {
           get: (name) => view.options[name],
           set: (name, value) => view.configure({ [name]: value }),
-          whyRests: (name) => whyViewOptionRests(name, view.options),
         },
       );
     this.sections = [options('Quality', QUALITY_OPTIONS), this.#addGi(), options('Look inside', DEBUG_OPTIONS)];
@@ -70,15 +75,10 @@ export class RenderTab {
   }
 
   #addGi() {
-    const settings = this.app.target('settings');
-    const rows = this.app.parameters('settings').filter(({ name }) => isGiSetting(name));
+    const rows = this.app.parameters('settings').filter(isGiSetting);
     const gui = makeSection(this.controls, 'Global illumination');
     this.giRoot = gui.domElement;
-    const controls = addParameterControls(gui, rows, {
-      ...settings,
-      whyRests: (name) =>
-        whyGiSettingRests(name, Object.fromEntries(rows.map((row) => [row.name, settings.get(row.name)]))),
-    });
+    const controls = addParameterControls(gui, rows, this.app.target('settings'));
     gui.$children.prepend(this.offHint);
     return controls;
   }
