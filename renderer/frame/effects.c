@@ -170,6 +170,9 @@ void effects_plan(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
            automatic ? "exposure is automatic" : "exposure is fixed");
     uint32_t chosen = EFFECT_BIT(EFFECT_AUTO_EXPOSURE) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |
                       ((1u << EFFECT_COUNT) - EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE));
+    if (!settings->shadows)
+        chosen |= EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_SINGLE_VIEW_SHADOWS) |
+                  EFFECT_BIT(EFFECT_POINT_SHADOWS);
     uint32_t allowed = plan_indirect(plan, gpu_scene, params) | ~chosen;
     if (settings->force_all_effects)
         for (int i = 0; i < EFFECT_COUNT; i++)
