@@ -97,6 +97,7 @@ static struct voxel_volume_params volume_params(const struct frame *frame)
         .clip_levels = settings->gi_method == GI_METHOD_CLIPMAP ? settings->clip_levels : 0,
         .directions = settings->voxel_directions,
         .cache_cones = cone_set_count(cache_cones_of(settings)),
+        .colors = frame_has(frame, EFFECT_VOXEL_COLORS),
     };
     enum voxel_resolution resolution = settings->voxel_resolution;
     if (resolution == VOXEL_RESOLUTION_AUTO)
@@ -110,7 +111,8 @@ static struct voxel_volume_params volume_params(const struct frame *frame)
 static bool same_params(const struct voxel_volume_params *a, const struct voxel_volume_params *b)
 {
     return a->method == b->method && a->edge == b->edge && a->clip_levels == b->clip_levels &&
-           a->directions == b->directions && a->cache_cones == b->cache_cones;
+           a->directions == b->directions && a->cache_cones == b->cache_cones &&
+           a->colors == b->colors;
 }
 
 // The first volume of the frame's kind (shared, or of one view only) that the view may draw with,

@@ -17,6 +17,7 @@ struct voxel_volume_params {
     uint32_t clip_levels;  // 0: as the scene calls for
     enum voxel_directions directions;
     uint32_t cache_cones; // per voxel face
+    bool colors;          // surfels hold colours of their own, beside their material's
 };
 
 // How many levels a clipmap of these parameters has: as many as it takes for the coarsest to cover
