@@ -62,6 +62,9 @@ bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
 {
     struct view *view = frame->view;
     struct voxel_volume *volume = frame->volume;
+    // Where pixels accumulate nothing, what they have accumulated is freed.
+    if (!volume || frame->gather == GATHER_CACHE)
+        view->accumulated_samples = 0;
     if (!volume)
         return true;
     struct voxel_block *block = &volume->uniforms;
