@@ -76,6 +76,7 @@ bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
         frame->accumulation_target = CONE_PICTURES;
     if (frame->gather != GATHER_CACHE) {
         uint64_t key = hash_march(volume->light.version, &block->pixel_march);
+        key = hash_word(key, volume->lit_key);
         key = hash_word(key, view->volume_serial);
         key = hash_word(key, (uint64_t)frame->gather);
         // Of what nobody asked for nothing has been gathered.

@@ -287,6 +287,13 @@ static bool frame_shows_cache(const struct frame *frame)
            view == DEBUG_VIEW_AMBIENT_OCCLUSION || view == DEBUG_VIEW_CACHE_AGE;
 }
 
+// Whether pixels gather the only bounce that there is, but for transparent layers, which read the
+// cache, and for which no pixel asks.
+static bool layers_alone_show_cache(const struct frame *frame)
+{
+    return frame->params->settings.bounces == 1 && frame_has(frame, EFFECT_TRANSPARENCY);
+}
+
 // Whether there is no volume because others' views have all that views may have for themselves.
 static bool too_many_own(const struct gi *gi, const struct frame *frame)
 {
@@ -320,7 +327,8 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
         .key = light_key(frame, volume),
         .bounces = settings->bounces,
         .multi_bounce = frame_has(frame, EFFECT_MULTI_BOUNCE),
-        .cache_shown = frame_shows_cache(frame),
+        .all_faces = frame_has(frame, EFFECT_MULTI_BOUNCE) || layers_alone_show_cache(frame),
+        .cache_shown = frame_shows_cache(frame) || layers_alone_show_cache(frame),
         .camera_moved = frame->visibility_changed,
         .software = gpu_get_info(gi->gpu)->software,
         .levels_per_frame = settings->levels_per_frame,

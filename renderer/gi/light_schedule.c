@@ -86,7 +86,8 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     *out_work = (struct voxel_light_work){.voxelize = volume->region_count > 0};
     light->needed = generations_needed(params);
     light->unlimited = params->bounces == 0;
-    light->all_faces_requested = params->multi_bounce;
+    bool more_asked = params->all_faces && !light->all_faces_requested;
+    light->all_faces_requested = params->all_faces;
     volume->frame = volume->frame % 0x7fffffffu + 1;
     if (volume->lit_key != params->key || light->generation == 0) {
         light->relight_direct = true;
@@ -109,7 +110,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->converged = false;
         light->quiet_frames = 0;
     }
-    if (!params->multi_bounce && params->camera_moved) {
+    if (more_asked || (!params->all_faces && params->camera_moved)) {
         light->converged = false;
         light->quiet_frames = 0;
     }
@@ -128,7 +129,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     volume->uniforms.cache_generation = light->generation;
     volume->uniforms.frame_number = volume->frame;
     volume->uniforms.trace_budget = (uint32_t)entry_budget(volume, params);
-    volume->uniforms.multi_bounce = params->multi_bounce;
+    volume->uniforms.all_faces = params->all_faces;
     volume->uniforms.peak_radiance = light->peak;
     light->feeds = feeds;
 }

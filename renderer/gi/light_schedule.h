@@ -10,6 +10,7 @@ struct voxel_light_params {
     uint64_t key;      // of everything that light depends on, but for where the camera is
     uint32_t bounces;  // 0: unlimited
     bool multi_bounce; // voxels reflect what the cache holds
+    bool all_faces;    // are wanted, rather than those that pixels ask for
     bool cache_shown;  // pixels read the cache, rather than gather the last bounce themselves
     bool camera_moved;
     bool software;

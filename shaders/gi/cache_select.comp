@@ -54,7 +54,7 @@ void main()
             continue;
         uint asked = faces[words + FACE_REQUEST];
         bool seen = asked != 0u && voxels.frame_number - asked < REQUEST_FRAMES;
-        if (!seen && voxels.multi_bounce == 0u)
+        if (!seen && voxels.all_faces == 0u)
             continue;
         if (!fresh)
             enqueue(!seen ? 2u : marched ? 1u : 0u, words);

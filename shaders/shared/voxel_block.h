@@ -61,7 +61,7 @@ struct voxel_block {
     uint cache_generation;
     uint frame_number;
     uint trace_budget; // entries of the cache
-    uint multi_bounce; // 1 if cached light is reflected again
+    uint all_faces;    // 1: faces that no pixel has requested are traced, too
     float ao_radius_m; // reach of ambient occlusion
     float indirect_intensity;
     float specular_max_roughness; // rougher surfaces take the cache's light
