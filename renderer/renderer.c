@@ -168,8 +168,10 @@ static bool same_surfaces(const struct view *view, const struct frame_params *pa
     const struct scene_revisions *seen = &view->last_revisions;
     return memcmp(&last->camera, &params->camera, sizeof(last->camera)) == 0 &&
            last->width == params->width && last->height == params->height &&
-           last->quality == params->quality && seen->geometry == revisions->geometry &&
-           seen->transforms == revisions->transforms && seen->materials == revisions->materials;
+           last->quality == params->quality &&
+           !(render_settings_changes(&last->settings, &params->settings) & INVALIDATES_SURFACES) &&
+           seen->geometry == revisions->geometry && seen->transforms == revisions->transforms &&
+           seen->materials == revisions->materials;
 }
 
 static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)

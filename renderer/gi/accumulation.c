@@ -82,6 +82,8 @@ bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
         // Of what nobody asked for nothing has been gathered.
         key = hash_word(key, frame->plan.bits);
         key = hash_word(key, (uint64_t)frame->params->debug_view);
+        key = hash_word(key,
+                        render_settings_hash(&frame->params->settings, INVALIDATES_ACCUMULATION));
         if (frame->visibility_changed || frame->light_work.voxelize ||
             key != view->accumulation_key)
             view->accumulated_samples = 0;

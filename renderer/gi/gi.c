@@ -229,7 +229,7 @@ static float radiance_scale(const struct gpu_scene *gpu_scene, float before)
 
 // Of everything that the light in voxels depends on; nothing of a view's quality, since views of
 // different quality share a volume and would set it back in turns.
-static uint64_t light_key(const struct frame *frame, const struct voxel_volume *volume)
+static uint64_t light_key(const struct frame *frame)
 {
     const struct render_settings *settings = &frame->params->settings;
     const struct scene_revisions *now = &frame->gpu_scene->scene->revisions;
@@ -239,14 +239,13 @@ static uint64_t light_key(const struct frame *frame, const struct voxel_volume *
         now->materials,
         now->lights,
         settings->environment_light ? now->environment + 1 : 0,
-        settings->bounces,
-        settings->shadows,
         frame_has(frame, EFFECT_MULTI_BOUNCE),
+        render_settings_hash(settings, INVALIDATES_LIGHT),
     };
     uint64_t hash = 1469598103934665603ull;
     for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
         hash = hash_word(hash, words[i]);
-    return hash_march(hash, &volume->uniforms.cache_march);
+    return hash;
 }
 
 static void fill_march(struct voxel_volume *volume, enum cone_set set, float step,
@@ -324,7 +323,7 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
     fill_cones(frame, volume);
     volume->scale = radiance_scale(frame->gpu_scene, volume->scale);
     struct voxel_light_params light = {
-        .key = light_key(frame, volume),
+        .key = light_key(frame),
         .bounces = settings->bounces,
         .multi_bounce = frame_has(frame, EFFECT_MULTI_BOUNCE),
         .all_faces = frame_has(frame, EFFECT_MULTI_BOUNCE) || layers_alone_show_cache(frame),
