@@ -15,7 +15,7 @@
 #define CONE_STEP_MIN   0.25f
 #define CONE_STEP_MAX   2.0f
 
-// Shared by all views of a scene; the fields are the rows of parameters/settings.def.
+// Shared by all views of a scene; the fields are the rows of protocol/parameters/settings.def.
 struct render_settings {
 #define PARAMETER(record, name, type, ...) PARAMETER_FIELD(type, name)
 #include "protocol/parameters/settings.def"
@@ -41,7 +41,7 @@ struct quality_level {
 
 extern const struct quality_level quality_levels[QUALITY_COUNT];
 
-// World, metres; the fields are the rows of parameters/camera.def.
+// World, metres; the fields are the rows of protocol/parameters/camera.def.
 struct view_camera {
 #define PARAMETER(record, name, type, ...) PARAMETER_FIELD(type, name)
 #include "protocol/parameters/camera.def"

@@ -32,18 +32,18 @@ union record {
 };
 
 // Where the table's records lie in the record of their group.
-#define LIGHT_POSITION(name)        light.light.name
-#define LIGHT_PLACEMENT_PLACE(name) light.name
-#define MATERIAL_PLACE(name)        material.name
-#define NODE_PLACE(name)            node.name
-#define ENVIRONMENT_PLACE(name)     environment.name
-#define SETTINGS_PLACE(name)        settings.name
-#define ANIMATION_PLACE(name)       animation.name
-#define VIEW_PLACE(name)            view.name
-#define CAMERA_PLACE(name)          camera.name
+#define LIGHT_FIELD(name)           light.light.name
+#define LIGHT_PLACEMENT_FIELD(name) light.name
+#define MATERIAL_FIELD(name)        material.name
+#define NODE_FIELD(name)            node.name
+#define ENVIRONMENT_FIELD(name)     environment.name
+#define SETTINGS_FIELD(name)        settings.name
+#define ANIMATION_FIELD(name)       animation.name
+#define VIEW_FIELD(name)            view.name
+#define CAMERA_FIELD(name)          camera.name
 
 // Where each parameter's field lies in there, in the order of the table.
-#define OFFSET(record_name, name) offsetof(union record, record_name##_PLACE(name)),
+#define OFFSET(record_name, name) offsetof(union record, record_name##_FIELD(name)),
 static const size_t offsets[] = {
 #define PARAMETER(record, name, ...) OFFSET(record, name)
 #include "protocol/parameters/parameters.def"
@@ -52,7 +52,7 @@ static const size_t offsets[] = {
 
 // Its type there is the one that read_field() and write_field() take it for.
 #define CHECK_TYPE(record_name, name, type)                                                        \
-    _Static_assert(_Generic(&((union record *)0)->record_name##_PLACE(name),                       \
+    _Static_assert(_Generic(&((union record *)0)->record_name##_FIELD(name),                       \
                             PARAMETER_ELEMENT_##type(*) PARAMETER_EXTENT_##type                    \
                             : true, default                                                        \
                             : false),                                                              \

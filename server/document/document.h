@@ -11,7 +11,7 @@
 #include "protocol/parameter_value.h"
 #include "renderer/renderer.h"
 
-// What one client's view is beside the shared document; the rows of parameters/view.def.
+// What one client's view is beside the shared document; the rows of protocol/parameters/view.def.
 struct view_options {
 #define PARAMETER(record, name, type, ...) PARAMETER_FIELD(type, name)
 #include "protocol/parameters/view.def"
@@ -19,7 +19,7 @@ struct view_options {
     struct view_camera camera;
 };
 
-// The rows of parameters/animation.def.
+// The rows of protocol/parameters/animation.def.
 struct animation_state {
 #define PARAMETER(record, name, type, ...) PARAMETER_FIELD(type, name)
 #include "protocol/parameters/animation.def"

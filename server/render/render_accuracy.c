@@ -90,8 +90,8 @@ bool render_find_configuration(struct render_thread *thread, const struct comman
 
 void render_clear_configuration(struct render_thread *thread, struct render_client *client)
 {
-    if (!client->client_id || !client->options.configuration[0])
+    if (!client->client_id || !client->options.rung[0])
         return;
-    client->options.configuration[0] = '\0';
+    client->options.rung[0] = '\0';
     render_mark_dirty(thread, client);
 }

@@ -118,7 +118,7 @@ void render_mark_moving(struct render_thread *thread, struct render_client *clie
 
 static struct quality_request request_of(const struct render_client *client)
 {
-    if (client->options.configuration[0])
+    if (client->options.rung[0])
         return (struct quality_request){.wanted = client->configuration.quality};
     return (struct quality_request){.wanted = client->options.quality,
                                     .adaptive = client->options.adaptive,
@@ -279,7 +279,7 @@ static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
         .settings = render_resolve_settings(thread),
         .user_id = client->frame_count + 1,
     };
-    if (client->options.configuration[0])
+    if (client->options.rung[0])
         apply_configuration(&client->configuration, &params);
     struct error error = {""};
     uint64_t start = clock_now_us();

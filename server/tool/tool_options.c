@@ -312,7 +312,7 @@ bool cli_settings_apply(const struct cli_settings *options, enum quality preset,
         snprintf(key, sizeof(key), "%.*s", (int)(equals - text), text);
         if (!document_set_text(scene, settings, view, key, equals + 1, out_error))
             return false;
-        if (view->configuration[0])
+        if (view->rung[0])
             return error_set(out_error,
                              "--set \"%.200s\": rungs are measured by clients of the "
                              "daemon; see voxcast accuracy --help",

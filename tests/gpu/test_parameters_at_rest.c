@@ -13,7 +13,9 @@
 
 #include "renderer/import/builtin/builtin.h"
 #include "renderer/import/builtin/mesh_builder.h"
+#include "renderer/scene/scene.h"
 #include "server/document/document.h"
+#include "server/document/document_text.h"
 #include "support_gi.h"
 
 // Of 255, in any channel of any pixel. Two fresh views of one state are the same to the bit, but
@@ -95,7 +97,7 @@ static struct scene *make_scene(void)
     uint32_t glass = add_material(scene, "glass", 0.9f, 0.0f, false);
     uint32_t veil = add_material(scene, "veil", 0.3f, 0.8f, false);
     uint32_t sieve = add_material(scene, "sieve", 0.6f, 1.0f, false);
-    uint32_t light = add_material(scene, "lamp", 0.0f, 1.0f, false);
+    uint32_t emitter = add_material(scene, "lamp", 0.0f, 1.0f, false);
     scene->materials[phong].shading = SCENE_SHADING_BLINN_PHONG;
     scene->materials[glass].transmission = 1.0f;
     scene->materials[glass].thickness_m = 0.2f;
@@ -105,9 +107,9 @@ static struct scene *make_scene(void)
     scene->materials[veil].base_color[3] = 0.5f;
     scene->materials[sieve].alpha_mode = SCENE_ALPHA_MASK;
     scene->materials[sieve].base_color[3] = 0.55f;
-    scene->materials[light].emissive_strength = 8.0f;
+    scene->materials[emitter].emissive_strength = 8.0f;
     for (int c = 0; c < 3; c++)
-        scene->materials[light].emissive[c] = 1.0f;
+        scene->materials[emitter].emissive[c] = 1.0f;
     add_box(scene, floor, (float[3]){-0.6f, -0.1f, -0.5f}, (float[3]){0.6f, 0.0f, 0.5f});
     add_box(scene, mirror, (float[3]){-0.6f, 0.0f, -0.6f}, (float[3]){0.6f, 0.7f, -0.5f});
     add_box(scene, specular, (float[3]){-0.5f, 0.0f, -0.3f}, (float[3]){-0.25f, 0.3f, -0.1f});
@@ -115,7 +117,7 @@ static struct scene *make_scene(void)
     add_box(scene, glass, (float[3]){0.2f, 0.0f, -0.1f}, (float[3]){0.4f, 0.25f, 0.1f});
     add_box(scene, veil, (float[3]){-0.45f, 0.0f, 0.2f}, (float[3]){-0.2f, 0.15f, 0.25f});
     add_box(scene, sieve, (float[3]){0.3f, 0.0f, 0.3f}, (float[3]){0.5f, 0.1f, 0.35f});
-    add_box(scene, light, (float[3]){0.1f, 0.75f, 0.0f}, (float[3]){0.3f, 0.8f, 0.2f});
+    add_box(scene, emitter, (float[3]){0.1f, 0.75f, 0.0f}, (float[3]){0.3f, 0.8f, 0.2f});
     add_box(scene, floor, (float[3]){3.0f, 1.5f, 1.5f}, (float[3]){3.05f, 1.55f, 1.55f});
     add_box(scene, floor, (float[3]){-1.5f, -0.5f, -1.5f}, (float[3]){-1.45f, -0.45f, -1.45f});
     struct scene_light light;
