@@ -23,8 +23,6 @@
 #include "renderer/scene/scene.h"
 #include "renderer/settings.h"
 
-#define RENDERER_MAX_VIEWS 64u
-
 struct renderer;
 struct view;
 

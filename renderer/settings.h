@@ -11,6 +11,8 @@
 #define VIEW_MAX_HEIGHT 2160u
 #define VIEW_MIN_EDGE   1u
 
+#define RENDERER_MAX_VIEWS 64u
+
 #define CLIP_MAX_LEVELS 6u
 #define CONE_STEP_MIN   0.25f
 #define CONE_STEP_MAX   2.0f

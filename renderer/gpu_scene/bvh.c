@@ -8,7 +8,6 @@
 
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/scene/scene.h"
-#include "server/accuracy/edit_latency.h"
 
 #define MAX_LEAF_TRIANGLES 4u
 // Embree's own range.

@@ -6,7 +6,6 @@
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/scene/placement.h"
 #include "renderer/scene/scene.h"
-#include "server/accuracy/edit_latency.h"
 
 static uint32_t pack_snorm(float value)
 {

@@ -6,7 +6,6 @@
 
 #include "renderer/gpu_scene/bvh.h"
 #include "renderer/scene/scene.h"
-#include "server/accuracy/edit_latency.h"
 
 // Where the scene lies, rounded to multiples of a power of two about as large as it is.
 static void choose_origin(struct gpu_scene *gpu_scene)

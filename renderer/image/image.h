@@ -4,6 +4,10 @@
 
 #include <stdint.h>
 
+#define IMAGE_MAX_EDGE   16384u
+#define IMAGE_MAX_BYTES  (256u << 20)    // decoded, of one
+#define IMAGES_MAX_BYTES (2048ull << 20) // decoded, of one scene
+
 // 8-bit RGBA, row 0 at the top, `width` x `height` x 4 bytes, values as stored in the file.
 struct image {
     uint32_t references; // changed by atomic operations alone; plain so that C++ can include this

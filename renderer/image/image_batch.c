@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "renderer/image/image_decode.h"
-#include "renderer/scene/scene.h"
+#include "renderer/image/image.h"
 
 struct image_batch {
     struct image_request *requests;
@@ -19,10 +19,10 @@ static bool reserve_bytes(struct image_batch *batch, uint32_t width, uint32_t he
                           struct error *out_error)
 {
     uint64_t bytes = (uint64_t)width * height * 4;
-    if (atomic_fetch_add(&batch->bytes, bytes) + bytes > SCENE_MAX_ALL_IMAGES_BYTES) {
+    if (atomic_fetch_add(&batch->bytes, bytes) + bytes > IMAGES_MAX_BYTES) {
         atomic_fetch_sub(&batch->bytes, bytes);
         return error_set(out_error, "the scene's pictures exceed %llu MiB together",
-                         SCENE_MAX_ALL_IMAGES_BYTES >> 20);
+                         IMAGES_MAX_BYTES >> 20);
     }
     return true;
 }
@@ -64,7 +64,7 @@ static void load_request(struct image_batch *batch, struct image_request *reques
     }
     uint8_t *bytes;
     size_t size;
-    if (asset_read_file(request->key.path, SCENE_MAX_IMAGE_BYTES, &bytes, &size,
+    if (asset_read_file(request->key.path, IMAGE_MAX_BYTES, &bytes, &size,
                         &request->key.stamp, &request->error)) {
         decode_request(batch, request, bytes, size);
         free(bytes);

@@ -21,7 +21,7 @@ struct image_request {
 };
 
 // Fills image or error of every request. The pictures together stay below
-// SCENE_MAX_ALL_IMAGES_BYTES; those beyond it fail. Blocks until all are done.
+// IMAGES_MAX_BYTES; those beyond it fail. Blocks until all are done.
 void image_batch_load(struct image_request *requests, uint32_t count);
 
 #endif

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <webp/decode.h>
 
-#include "renderer/scene/scene.h"
+#include "renderer/image/image.h"
 
 // A compressed stream may claim far more data than its picture holds, and stb would follow it:
 // every allocation of the picture being decoded on this thread must stay below this.
@@ -30,7 +30,7 @@ static void *limited_realloc(void *old, size_t size)
 #define STBI_ONLY_BMP
 #define STBI_ONLY_HDR
 #define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS SCENE_MAX_IMAGE_EDGE
+#define STBI_MAX_DIMENSIONS IMAGE_MAX_EDGE
 #define STB_IMAGE_STATIC
 #pragma GCC diagnostic ignored "-Wunused-function" // stb declares more than these options define
 #include <stb_image.h>
@@ -55,15 +55,15 @@ bool image_decode_size(const uint8_t *bytes, size_t size, uint32_t *out_width, u
         return error_set(out_error,
                          "not a picture that can be read (PNG, JPEG, WebP, TGA or BMP), or it is "
                          "damaged or larger than %u pixels a side",
-                         SCENE_MAX_IMAGE_EDGE);
+                         IMAGE_MAX_EDGE);
     }
-    if (width < 1 || height < 1 || width > (int)SCENE_MAX_IMAGE_EDGE ||
-        height > (int)SCENE_MAX_IMAGE_EDGE ||
-        (uint64_t)width * (uint64_t)height * 4 > SCENE_MAX_IMAGE_BYTES) {
+    if (width < 1 || height < 1 || width > (int)IMAGE_MAX_EDGE ||
+        height > (int)IMAGE_MAX_EDGE ||
+        (uint64_t)width * (uint64_t)height * 4 > IMAGE_MAX_BYTES) {
         return error_set(out_error,
                          "a picture of %d x %d pixels; allowed are 1 to %u a side and %u MiB "
                          "when decoded",
-                         width, height, SCENE_MAX_IMAGE_EDGE, SCENE_MAX_IMAGE_BYTES >> 20);
+                         width, height, IMAGE_MAX_EDGE, IMAGE_MAX_BYTES >> 20);
     }
     *out_width = (uint32_t)width;
     *out_height = (uint32_t)height;

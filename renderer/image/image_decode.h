@@ -10,7 +10,7 @@
 
 // Width and height from the header alone, so that limits hold before anything is decoded. The
 // format is told by the content. False with a message if it is unknown, or the size is zero or
-// beyond SCENE_MAX_IMAGE_EDGE or SCENE_MAX_IMAGE_BYTES. Any thread.
+// beyond IMAGE_MAX_EDGE or IMAGE_MAX_BYTES. Any thread.
 bool image_decode_size(const uint8_t *bytes, size_t size, uint32_t *out_width, uint32_t *out_height,
                        struct error *out_error);
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/image/texture_sample.h"
+#include "renderer/scene/texture_sample.h"
 #include "renderer/scene/vector3.h"
 
 // Embree's own range ends at about 1.8e18; instances that reach beyond this are left out.

@@ -28,9 +28,6 @@
 #define SCENE_MAX_LIGHTS           8192u
 #define SCENE_MAX_CAMERAS          1024u
 #define SCENE_MAX_ANIMATIONS       1024u
-#define SCENE_MAX_IMAGE_EDGE       16384u
-#define SCENE_MAX_IMAGE_BYTES      (256u << 20)
-#define SCENE_MAX_ALL_IMAGES_BYTES (2048ull << 20)
 #define SCENE_MAX_FILE_BYTES       (1024ull << 20)
 #define SCENE_MAX_WARNINGS         64u
 

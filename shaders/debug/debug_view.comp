@@ -3,6 +3,7 @@
 #include "lib/gbuffer.glsl"
 #include "lib/display.glsl"
 #include "lib/radiance_buffer.glsl"
+#include "shared/shadow_view_block.h"
 #if SINGLE_VIEW_SHADOWS
 #include "lib/shadow.glsl"
 #endif

@@ -1,12 +1,12 @@
 // Direct light on a surface from punctual lights (KHR_lights_punctual) and planar emitters.
 #include "lib/brdf.glsl"
+#include "lib/cone.glsl"
+#include "shared/area_light_block.h"
+#include "shared/light_block.h"
+// Last, since files are included once: what it includes is here already.
 #if SHADOWS
 #include "lib/shadow.glsl"
 #endif
-
-#include "lib/cone.glsl" // outside of conditions, since files are included once
-#include "shared/area_light_block.h"
-#include "shared/light_block.h"
 
 #if PUNCTUAL_LIGHTS
 layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage

@@ -43,7 +43,7 @@
 #define SURFEL_WORDS              18u
 #define SURFEL_NEXT               0u
 #define SURFEL_KEY                1u // surface * 8 + face
-#define SURFEL_MASK               2u // bit x + 2 y + 4 z for each half of the voxel that is overlapped
+#define SURFEL_MASK               2u // bit x + 2 y + 4 z for each half of the voxel in use
 #define SURFEL_WEIGHT             3u
 #define SURFEL_NORMAL             4u    // 3 sums of weight * normal * 127
 #define SURFEL_SUB_VOXEL_POSITION 7u    // 3 sums of weight * place in the voxel * 255

@@ -49,8 +49,26 @@ function unusedMacros(files) {
       else if (token.text !== 'undef' && !isDefault(token, tokens[index + 1])) used.add(first.text);
     });
   }
+  const pasted = pastedParts(files);
   const isOurs = ({ name }) => !HEADER_GUARD.test(name) && !FOR_LIBRARIES.some((prefix) => name.startsWith(prefix));
-  return defined.filter((macro) => isOurs(macro) && !used.has(macro.name));
+  return defined.filter((macro) => isOurs(macro) && !used.has(macro.name) && !pasted.some((part) => part(macro.name)));
+}
+
+/** Names that macros build: for PREFIX_##x all that begin so, for x##_SUFFIX all that end so. */
+function pastedParts(files) {
+  const parts = [];
+  for (const file of files)
+    for (const { kind, inner } of tokensOf(file)) {
+      if (kind !== 'directive') continue;
+      const texts = inner.map(({ text }) => text);
+      texts.forEach((text, i) => {
+        if (text !== '#' || texts[i + 1] !== '#') return;
+        const [before, after] = [texts[i - 1], texts[i + 2]];
+        if (/^[A-Z]\w*_$/.test(before)) parts.push((name) => name.startsWith(before));
+        if (/^_[A-Z]\w*$/.test(after)) parts.push((name) => name.endsWith(after));
+      });
+    }
+  return parts;
 }
 
 /** "#ifndef X" before "#define X" reads nothing of X. */

@@ -12,7 +12,7 @@ const LANGUAGES = [
   ['C', /\.c$/],
   ['C++', /\.(cpp|hpp)$/],
   ['GLSL', /\.(vert|frag|comp|glsl)$|^shaders\/shared\/.*\.h$/],
-  ['C', /\.h$/],
+  ['C', /\.(h|def)$/],
   ['JS', /\.m?js$/],
   ['CSS', /\.css$/],
   ['shell', /\.sh$|^dev$|^\.ci\/run$/],
@@ -36,11 +36,8 @@ export function readSources() {
     .map((path) => ({ path, language: languageOf(path), text: readFileSync(join(ROOT, path), 'utf8') }));
 }
 
-/**
- * The stability suite is a command of voxcast, so it is product, too.
- * @param {SourceFile} file
- */
-export const isProduct = ({ path }) => /^(server|renderer|protocol|shaders|tests\/stability)\//.test(path);
+/** @param {SourceFile} file */
+export const isProduct = ({ path }) => /^(server|renderer|protocol|shaders)\//.test(path);
 
 /** @param {SourceFile} file */
 export const isCode = ({ language }) => ['C', 'C++', 'GLSL'].includes(language);

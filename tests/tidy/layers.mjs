@@ -7,14 +7,17 @@
 /** Made by CMake: where sources and shaders lie. */
 const PATHS = 'voxcast_paths.h';
 
-/** Plain data and small services that stand below all other rooms of the renderer. */
-const ERROR = 'renderer/error.h';
-const CLOCK = 'renderer/clock.h';
-const SETTINGS = 'renderer/settings.h';
+/** Plain data and small services that stand below all rooms of the renderer. */
+const BASE = ['renderer/error.h', 'renderer/log.h', 'renderer/clock.h'];
+const SETTINGS = ['renderer/settings.h', 'renderer/parameter_types.h'];
+
+/** What whoever uses the renderer may know beside renderer.h: plain data and pure functions. */
+const API = ['renderer/renderer.h', 'renderer/camera.h', 'renderer/metrics', ...BASE, ...SETTINGS];
 
 /** @type {Layer[]} */
 export const LAYERS = [
-  { folder: 'protocol', may: [], why: 'pure: parse, validate, encode; knows neither renderer nor server' },
+  { folder: 'protocol/parameters', may: [], why: 'data, which both protocol and renderer read' },
+  { folder: 'protocol', may: ['protocol/parameters'], why: 'pure: parse, validate, encode' },
 
   { folder: 'shaders/shared', may: [], why: 'read by C and GLSL alike' },
   { folder: 'shaders/lib', may: ['shaders/shared'], why: 'what shaders of several stages need' },
@@ -24,61 +27,144 @@ export const LAYERS = [
     why: 'stages share by shaders/lib alone',
   })),
 
-  { folder: 'renderer/gpu', may: ['shaders/shared', ERROR, CLOCK], why: 'the ground floor; alone calls GL and EGL' },
-  { folder: 'renderer/scene', may: [ERROR], why: 'the document and its importers know of no GPU' },
-  { folder: 'renderer/scene/builtin', may: ['renderer/scene'], why: 'makes scenes as importers do' },
+  { folder: 'renderer/gpu', may: ['shaders/shared', ...BASE], why: 'the ground floor; alone calls GL and EGL' },
   {
-    folder: 'renderer/resident',
-    may: ['renderer/gpu', 'renderer/scene', 'shaders/shared'],
+    folder: 'renderer/scene',
+    may: ['renderer/image', 'protocol/parameters', ...BASE, ...SETTINGS],
+    why: 'the document alone: no GPU, no files',
+  },
+  { folder: 'renderer/image', may: BASE, why: 'pixels of textures: decoded and cached' },
+  { folder: 'renderer/import', may: ['renderer/scene', 'renderer/image', ...BASE], why: 'files to documents' },
+  { folder: 'renderer/import/builtin', may: ['renderer/import', 'renderer/scene'], why: 'scenes made by code' },
+  {
+    folder: 'renderer/gpu_scene',
+    may: ['renderer/gpu', 'renderer/scene', 'renderer/image', 'shaders/shared', ...BASE, ...SETTINGS],
     why: 'the scene as the GPU holds it',
+  },
+  { folder: 'renderer/metrics', may: ['shaders/shared', ...BASE, ...SETTINGS], why: 'compares images; knows no scene' },
+  {
+    folder: 'renderer/path_tracer',
+    may: ['renderer/scene', 'renderer/image', 'shaders/shared', 'renderer/camera.h', ...BASE, ...SETTINGS],
+    why: 'runs on the CPU alone',
+  },
+  {
+    folder: 'renderer/frame',
+    may: [
+      'renderer/gpu_scene',
+      'renderer/gpu',
+      'renderer/scene',
+      'renderer/path_tracer',
+      'shaders/shared',
+      'renderer/camera.h',
+      ...BASE,
+      ...SETTINGS,
+    ],
+    why: 'a frame and its view: plain data and targets, which GI and passes work on',
   },
   {
     folder: 'renderer/gi',
-    may: ['renderer/resident', 'renderer/gpu', 'shaders/shared', SETTINGS, 'renderer/frame/effects.h'],
-    why: 'plans and keeps voxel light; passes draw it',
+    may: [
+      'renderer/frame',
+      'renderer/gpu_scene',
+      'renderer/gpu',
+      'renderer/scene',
+      'shaders/shared',
+      ...BASE,
+      ...SETTINGS,
+    ],
+    why: 'plans and keeps indirect light; passes draw it',
   },
   {
     folder: 'renderer/passes',
-    may: ['renderer/gi', 'renderer/resident', 'renderer/gpu', 'renderer/frame/view.h', 'renderer/frame/effects.h'],
-    why: 'a pass works on a view',
-  },
-  {
-    folder: 'renderer/reference',
-    may: ['renderer/scene', 'shaders/shared', ERROR, CLOCK, SETTINGS, 'renderer/camera.h'],
-    why: 'the path tracer runs on the CPU alone',
+    may: [
+      'renderer/gi',
+      'renderer/frame',
+      'renderer/gpu_scene',
+      'renderer/gpu',
+      'renderer/scene',
+      'shaders/shared',
+      ...BASE,
+      ...SETTINGS,
+    ],
+    why: 'one file a pass',
   },
   {
     folder: 'renderer',
     may: [
       'renderer/passes',
       'renderer/gi',
-      'renderer/resident',
-      'renderer/reference',
+      'renderer/frame',
+      'renderer/gpu_scene',
+      'renderer/path_tracer',
+      'renderer/metrics',
       'renderer/gpu',
+      'renderer/import',
+      'renderer/image',
       'renderer/scene',
       'shaders/shared',
+      'protocol/parameters',
       PATHS,
     ],
-    why: 'the whole; knows neither protocol nor server',
+    why: 'the whole; of the protocol it knows the table of parameters alone',
   },
 
   {
-    folder: 'server',
-    may: ['protocol', 'renderer/renderer.h', SETTINGS, 'renderer/log.h', 'renderer/image/image.h', PATHS],
-    why: 'sees of the renderer its one header, and plain data',
+    folder: 'server/document',
+    may: ['protocol', 'protocol/parameters', 'renderer/image', 'renderer/scene', ...API],
+    why: 'the scene as clients edit it',
   },
   {
-    folder: 'tests/stability',
+    folder: 'server/accuracy',
+    may: ['server/document', 'protocol', 'renderer/scene', 'renderer/path_tracer', PATHS, ...API],
+    why: 'measuring, below both programs',
+  },
+  { folder: 'server/stream', may: ['protocol', ...API], why: 'queues between threads, and encoders' },
+  {
+    folder: 'server/render',
+    may: ['server/document', 'server/accuracy', 'server/stream', 'protocol', 'renderer/scene', ...API],
+    why: 'the render thread',
+  },
+  {
+    folder: 'server/network',
+    may: ['server/render', 'server/stream', 'protocol', ...API],
+    why: 'sockets and sessions: parse, validate, post',
+  },
+  {
+    folder: 'server/tool',
     may: [
-      'server',
+      'server/document',
+      'server/accuracy',
+      'server/options.h',
       'protocol',
-      'renderer',
-      'renderer/reference',
+      'renderer/import',
+      'renderer/path_tracer',
       'renderer/scene',
-      'renderer/scene/builtin',
       PATHS,
+      ...API,
+    ],
+    why: 'the command line; the daemon knows nothing of it',
+  },
+  {
+    folder: 'server/tool/stability',
+    may: [
+      'server/tool',
+      'server/document',
+      'server/accuracy',
+      'protocol',
+      'renderer/import',
+      'renderer/import/builtin',
+      'renderer/image',
+      'renderer/path_tracer',
+      'renderer/scene',
+      PATHS,
+      ...API,
     ],
     why: 'a command of voxcast that looks into all',
+  },
+  {
+    folder: 'server',
+    may: ['server/network', 'server/render', 'server/stream', 'server/tool', 'protocol', PATHS, ...API],
+    why: 'the two programs',
   },
 ];
 
@@ -86,13 +172,4 @@ export const LAYERS = [
  * Arrows that run upward. The list may only shrink.
  * @type {Arrow[]}
  */
-export const UPWARD = [
-  {
-    from: 'renderer/gpu/gpu.h',
-    to: 'renderer/renderer.h',
-    why: 'struct renderer_info and enum renderer_fault want a header below both',
-  },
-  { from: 'renderer/gi/gi.c', to: 'renderer/frame/view.h', why: 'struct frame and what a view has gathered are one plan' },
-  { from: 'renderer/gi/gi.c', to: 'renderer/passes/pass.h', why: 'struct frame stands in the header of passes' },
-  { from: 'renderer/passes/pass.h', to: 'renderer/renderer.h', why: 'struct frame_params stands in renderer.h' },
-];
+export const UPWARD = [];

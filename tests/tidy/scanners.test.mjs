@@ -5,6 +5,7 @@ import { describe, test } from 'node:test';
 
 import { readStructure } from './c_structure.mjs';
 import { tokenize } from './c_tokens.mjs';
+import { judgeConditionalIncludes } from './conditional_includes.mjs';
 import { findUnused, judgeUnused, wordsOfAll } from './callers.mjs';
 import { languageOf } from './files.mjs';
 import { findBanned, judgeBanned, wordsOf } from './identifiers.mjs';
@@ -258,5 +259,22 @@ describe('words', () => {
     const text = 'const a = b / c / d; // e\nf(/g"[/]h/i, `j${k({ l: "m" })}n`);\n/* o */ return /p/.test(q);\n';
     const names = readJsWords(text).map((word) => word.text);
     assert.deepEqual(names, ['const', 'a', 'b', 'c', 'd', 'f', 'k', 'l', 'return', 'test', 'q']);
+  });
+});
+
+describe('conditional includes', () => {
+  const glsl = (/** @type {string} */ path, /** @type {string} */ text) => ({ path, language: 'GLSL', text });
+  const lib = [glsl('shaders/lib/a.glsl', '#include "lib/b.glsl"\n'), glsl('shaders/lib/b.glsl', '')];
+
+  test('of a file that includes another are found', () => {
+    const file = glsl('shaders/x/x.comp', '#if A\n#include "lib/a.glsl"\n#endif\n#include "lib/b.glsl"\n');
+    assert.deepEqual(judgeConditionalIncludes([...lib, file]), [
+      'shaders/x/x.comp:2: includes shaders/lib/a.glsl under a condition: include shaders/lib/b.glsl before',
+    ]);
+  });
+
+  test('are fine where that is there before', () => {
+    const file = glsl('shaders/x/x.comp', '#include "lib/b.glsl"\n#if A\n#include "lib/a.glsl"\n#endif\n');
+    assert.deepEqual(judgeConditionalIncludes([...lib, file]), []);
   });
 });

@@ -7,6 +7,7 @@ import { test } from 'node:test';
 
 import { findUnused, judgeUnused, wordsOfAll } from './callers.mjs';
 import { CALLED_BY_TESTS } from './callers_allowed.mjs';
+import { judgeConditionalIncludes } from './conditional_includes.mjs';
 import { isCode, isProduct, readSources } from './files.mjs';
 import { findBanned, judgeBanned } from './identifiers.mjs';
 import { findForeignGlCalls, findIncludes, judgeIncludes, judgeLayers } from './includes.mjs';
@@ -42,6 +43,10 @@ test('every function and every macro of the product is used there', () => {
 
 test('folders include what lies below them', () => {
   assertNone([...judgeLayers(LAYERS), ...judgeIncludes(findIncludes(product), LAYERS, UPWARD)]);
+});
+
+test('shaders include nothing under a condition that others would miss', () => {
+  assertNone(judgeConditionalIncludes(sources.filter(({ language }) => language === 'GLSL')));
 });
 
 test('renderer/gpu alone calls GL and EGL', () => {

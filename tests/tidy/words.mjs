@@ -13,7 +13,8 @@ export const BANNED = [
   { word: 'tree', instead: 'bvh', except: /^SceneTree$/ },
   { word: 'least', instead: 'min', except: /least_recently_used/ },
   { word: 'most', instead: 'max' },
-  { word: 'gather', instead: 'accumulate or final_gather' },
+  // "Final gather" is the field's.
+  { word: 'gather', instead: 'accumulate', except: /^(final_|frame_)?gather(_modes?|_mode_names|_step)?$|^GATHER_/ },
   { word: 'gathered', instead: 'accumulated' },
   { word: 'share', instead: 'visibility or fraction', except: /^VOXCAST_INSTALL_SHARE_DIR$/ },
   { word: 'quiet', instead: 'accumulate_only' },

@@ -84,7 +84,7 @@ static void test_limits_hold_before_decoding(void **state)
     assert_true(is_size_allowed(8192, 8192, &error));
     assert_false(is_size_allowed(8193, 8192, &error)); // over 256 MiB decoded
     assert_non_null(strstr(error.message, "8193 x 8192"));
-    assert_false(is_size_allowed(SCENE_MAX_IMAGE_EDGE + 1, 1, &error));
+    assert_false(is_size_allowed(IMAGE_MAX_EDGE + 1, 1, &error));
     assert_false(is_size_allowed(0, 1, &error));
 }
 

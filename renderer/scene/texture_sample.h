@@ -1,6 +1,6 @@
 // Looks a scene's textures up on the CPU.
-#ifndef VOXCAST_RENDERER_IMAGE_TEXTURE_SAMPLE_H
-#define VOXCAST_RENDERER_IMAGE_TEXTURE_SAMPLE_H
+#ifndef VOXCAST_RENDERER_SCENE_TEXTURE_SAMPLE_H
+#define VOXCAST_RENDERER_SCENE_TEXTURE_SAMPLE_H
 
 #include "renderer/scene/scene.h"
 

@@ -1,4 +1,4 @@
-#include "renderer/image/texture_sample.h"
+#include "renderer/scene/texture_sample.h"
 
 #include <math.h>
 #include <stddef.h>
