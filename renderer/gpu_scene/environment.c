@@ -17,21 +17,23 @@
 #define BRDF_SAMPLES    256u
 #define BRDF_MIN_COSINE 1e-3f
 
-// Radiance from a direction, of an unrotated environment of intensity 1.
+static bool has_image(const struct scene_environment *environment)
+{
+    return environment->type == SCENE_ENVIRONMENT_EQUIRECT && environment->image;
+}
+
+// Radiance about a direction, of an unrotated environment of intensity 1. An image is averaged over
+// the solid angle, so that no small and bright light falls between two samples.
 static void sample_environment(const struct scene_environment *environment, const float d[3],
-                               float out_color[3])
+                               float solid_angle, float out_color[3])
 {
     switch (environment->type) {
-    case SCENE_ENVIRONMENT_EQUIRECT: {
-        float u = 0.5f + atan2f(d[0], -d[2]) / (2.0f * (float)M_PI);
-        float v = acosf(fminf(fmaxf(d[1], -1.0f), 1.0f)) / (float)M_PI;
-        uint32_t x = (uint32_t)(u * (float)environment->width) % environment->width;
-        uint32_t y =
-            (uint32_t)fminf(v * (float)environment->height, (float)environment->height - 1.0f);
-        memcpy(out_color, environment->pixels + ((size_t)y * environment->width + x) * 3,
-               3 * sizeof(float));
+    case SCENE_ENVIRONMENT_EQUIRECT:
+        if (environment->image)
+            environment_image_sample(environment->image, d, solid_angle, out_color);
+        else
+            memset(out_color, 0, 3 * sizeof(float));
         return;
-    }
     case SCENE_ENVIRONMENT_GRADIENT:
         for (int c = 0; c < 3; c++) {
             float pole = d[1] >= 0.0f ? environment->color[c] : environment->ground_color[c];
@@ -47,13 +49,45 @@ static void sample_environment(const struct scene_environment *environment, cons
     }
 }
 
-// Projects onto bands 0 to 2 and folds in the clamped cosine over pi (Ramamoorthi and Hanrahan
-// 2001: A0 = pi, A1 = 2 pi / 3, A2 = pi / 4), so that a shader only evaluates a polynomial.
-static void project_harmonics(const struct scene_environment *environment,
-                              vec4 out_vectors[ENVIRONMENT_SH_COEFFICIENTS])
+static void add_harmonics(const float d[3], const float color[3], double solid_angle,
+                          double sums[9][3])
+{
+    const double basis[9] = {
+        0.282095,
+        0.488603 * d[1],
+        0.488603 * d[2],
+        0.488603 * d[0],
+        1.092548 * d[0] * d[1],
+        1.092548 * d[1] * d[2],
+        0.315392 * (3.0 * d[2] * d[2] - 1.0),
+        1.092548 * d[0] * d[2],
+        0.546274 * (d[0] * d[0] - d[1] * d[1]),
+    };
+    for (int i = 0; i < 9; i++)
+        for (int c = 0; c < 3; c++)
+            sums[i][c] += basis[i] * color[c] * solid_angle;
+}
+
+// Every texel of the finest level once, with its own solid angle.
+static void sum_image(const struct environment_level *level, double sums[9][3])
+{
+    for (uint32_t row = 0; row < level->height; row++) {
+        double top = cos(M_PI * row / level->height),
+               bottom = cos(M_PI * (row + 1) / level->height);
+        double angle = M_PI * (row + 0.5) / level->height;
+        for (uint32_t column = 0; column < level->width; column++) {
+            double phi = 2.0 * M_PI * ((column + 0.5) / level->width - 0.5);
+            float d[3] = {(float)(sin(angle) * sin(phi)), (float)cos(angle),
+                          (float)(-sin(angle) * cos(phi))};
+            add_harmonics(d, level->pixels + 3 * ((size_t)row * level->width + column),
+                          2.0 * M_PI / level->width * (top - bottom), sums);
+        }
+    }
+}
+
+static void sum_sky(const struct scene_environment *environment, double sums[9][3])
 {
     const uint32_t rows = SH_SAMPLE_ROWS, columns = 2 * SH_SAMPLE_ROWS;
-    double sums[9][3] = {{0}};
     for (uint32_t row = 0; row < rows; row++)
         for (uint32_t column = 0; column < columns; column++) {
             // Equal solid angles: y is uniform.
@@ -61,29 +95,30 @@ static void project_harmonics(const struct scene_environment *environment,
             float phi = 2.0f * (float)M_PI * ((float)column + 0.5f) / (float)columns;
             float r = sqrtf(fmaxf(0.0f, 1.0f - y * y));
             float d[3] = {r * cosf(phi), y, r * sinf(phi)}, color[3];
-            sample_environment(environment, d, color);
-            const double basis[9] = {
-                0.282095,
-                0.488603 * d[1],
-                0.488603 * d[2],
-                0.488603 * d[0],
-                1.092548 * d[0] * d[1],
-                1.092548 * d[1] * d[2],
-                0.315392 * (3.0 * d[2] * d[2] - 1.0),
-                1.092548 * d[0] * d[2],
-                0.546274 * (d[0] * d[0] - d[1] * d[1]),
-            };
-            for (int i = 0; i < 9; i++)
-                for (int c = 0; c < 3; c++)
-                    sums[i][c] += basis[i] * color[c];
+            sample_environment(environment, d, 0.0f, color);
+            add_harmonics(d, color, 1.0, sums);
         }
+    const double solid_angle = 4.0 * M_PI / (rows * columns);
+    for (int i = 0; i < 9; i++)
+        for (int c = 0; c < 3; c++)
+            sums[i][c] *= solid_angle;
+}
+
+// Projects onto bands 0 to 2 and folds in the clamped cosine over pi (Ramamoorthi and Hanrahan
+// 2001: A0 = pi, A1 = 2 pi / 3, A2 = pi / 4), so that a shader only evaluates a polynomial.
+static void project_harmonics(const struct scene_environment *environment, vec4 out_vectors[9])
+{
     static const double polynomial[9] = {0.282095, 0.488603, 0.488603, 0.488603, 1.092548,
                                          1.092548, 0.315392, 1.092548, 0.546274};
-    const double solid_angle = 4.0 * M_PI / (rows * columns);
+    double sums[9][3] = {{0}};
+    if (has_image(environment))
+        sum_image(&environment->image->levels[0], sums);
+    else
+        sum_sky(environment, sums);
     for (int i = 0; i < 9; i++) {
         double lobe_over_pi = i == 0 ? 1.0 : i < 4 ? 2.0 / 3.0 : 0.25;
         for (int c = 0; c < 3; c++)
-            out_vectors[i][c] = (float)(sums[i][c] * solid_angle * polynomial[i] * lobe_over_pi);
+            out_vectors[i][c] = (float)(sums[i][c] * polynomial[i] * lobe_over_pi);
     }
 }
 
@@ -102,9 +137,10 @@ static void octahedral_direction(float u, float v, float out_direction[3])
     out_direction[2] = z * inverse;
 }
 
-// GGX-weighted mean around n, importance sampled with n = v (Karis 2013).
+// GGX-weighted mean around n, importance sampled with n = v (Karis 2013). A sample stands for the
+// solid angle that its density leaves it (Krivanek and Colbert 2008); a mirror's for a texel's.
 static void blur_direction(const struct scene_environment *environment, const float n[3],
-                           float roughness, float out_color[3])
+                           float roughness, float texel_solid_angle, float out_color[3])
 {
     float alpha = roughness * roughness;
     vec3 up = {0.0f, 1.0f, 0.0f}, tangent, bitangent;
@@ -129,7 +165,11 @@ static void blur_direction(const struct scene_environment *environment, const fl
         float n_l = l[0] * n[0] + l[1] * n[1] + l[2] * n[2];
         if (n_l <= 0.0f)
             continue;
-        sample_environment(environment, l, color);
+        float spread = 1.0f + (alpha * alpha - 1.0f) * cosine2;
+        float solid_angle =
+            samples > 1 ? 4.0f * (float)M_PI * spread * spread / ((float)samples * alpha * alpha)
+                        : texel_solid_angle;
+        sample_environment(environment, l, fmaxf(solid_angle, texel_solid_angle), color);
         for (int c = 0; c < 3; c++)
             sum[c] += color[c] * n_l;
         weight += n_l;
@@ -180,7 +220,7 @@ static void tabulate_brdf(vec4 *nodes)
 static bool upload_levels(struct gpu_scene *gpu_scene, const struct scene_environment *environment)
 {
     // A constant or smooth sky needs no more than a few texels.
-    bool pictured = environment->type == SCENE_ENVIRONMENT_EQUIRECT;
+    bool pictured = has_image(environment);
     bool any = environment->type != SCENE_ENVIRONMENT_NONE;
     uint32_t edge = pictured ? LEVEL_EDGE : any ? 16 : 1;
     gpu_texture_destroy(&gpu_scene->environment_levels);
@@ -201,7 +241,8 @@ static bool upload_levels(struct gpu_scene *gpu_scene, const struct scene_enviro
             uint32_t row = i / edge;
             octahedral_direction(((float)(i % edge) + 0.5f) / (float)edge,
                                  ((float)row + 0.5f) / (float)edge, n);
-            blur_direction(environment, n, (float)level / (LEVEL_COUNT - 1), texels + 4 * i);
+            blur_direction(environment, n, (float)level / (LEVEL_COUNT - 1),
+                           4.0f * (float)M_PI / (float)(edge * edge), texels + 4 * i);
         }
         gpu_texture_write(gpu_scene->environment_levels, 0, level, texels);
     }
@@ -212,9 +253,9 @@ static bool upload_levels(struct gpu_scene *gpu_scene, const struct scene_enviro
 static bool upload_background(struct gpu_scene *gpu_scene,
                               const struct scene_environment *environment)
 {
-    bool pictured = environment->type == SCENE_ENVIRONMENT_EQUIRECT;
-    uint32_t width = pictured ? environment->width : 1;
-    uint32_t height = pictured ? environment->height : 1;
+    bool pictured = has_image(environment);
+    uint32_t width = pictured ? environment->image->width : 1;
+    uint32_t height = pictured ? environment->image->height : 1;
     gpu_texture_destroy(&gpu_scene->environment_background);
     gpu_scene->environment_background =
         gpu_texture_create(gpu_scene->gpu, &(struct gpu_texture_params){
@@ -229,17 +270,21 @@ static bool upload_background(struct gpu_scene *gpu_scene,
     bool done = gpu_scene->environment_background && texels;
     for (size_t i = 0; done && pictured && i < (size_t)width * height; i++)
         for (int c = 0; c < 3; c++)
-            texels[4 * i + (size_t)c] = fminf(environment->pixels[3 * i + (size_t)c], MAX_RADIANCE);
+            texels[4 * i + (size_t)c] =
+                fminf(environment->image->pixels[3 * i + (size_t)c], MAX_RADIANCE);
     if (done)
         gpu_texture_write(gpu_scene->environment_background, 0, 0, texels);
     free(texels);
     return done;
 }
 
-static bool same_pictures(const struct scene_environment *a, const struct scene_environment *b)
+static bool same_pictures(const struct gpu_scene *gpu_scene)
 {
-    return a->type == b->type && a->pixels == b->pixels && a->width == b->width &&
-           a->height == b->height && memcmp(a->color, b->color, sizeof(a->color)) == 0 &&
+    const struct scene_environment *a = &gpu_scene->environment_seen;
+    const struct scene_environment *b = &gpu_scene->scene->environment;
+    uint64_t serial = has_image(b) ? b->image->serial : 0;
+    return a->type == b->type && gpu_scene->environment_serial == serial &&
+           memcmp(a->color, b->color, sizeof(a->color)) == 0 &&
            memcmp(a->horizon_color, b->horizon_color, sizeof(a->horizon_color)) == 0 &&
            memcmp(a->ground_color, b->ground_color, sizeof(a->ground_color)) == 0;
 }
@@ -264,11 +309,11 @@ bool gpu_scene_upload_environment(struct gpu_scene *gpu_scene)
         return false;
     gpu_buffer_write(gpu_scene->environment, 0, sizeof(block), &block);
     // Intensity and rotation are uniforms: the pictures need not be made again for them.
-    const struct scene_environment *seen = &gpu_scene->environment_seen;
-    if (gpu_scene->environment_levels && same_pictures(seen, environment))
+    if (gpu_scene->environment_levels && same_pictures(gpu_scene))
         return true;
     if (!upload_levels(gpu_scene, environment) || !upload_background(gpu_scene, environment))
         return false;
     gpu_scene->environment_seen = *environment;
+    gpu_scene->environment_serial = has_image(environment) ? environment->image->serial : 0;
     return true;
 }

@@ -1,7 +1,6 @@
 #include "renderer/image/image_decode.h"
 
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <webp/decode.h>
@@ -28,7 +27,6 @@ static void *limited_realloc(void *old, size_t size)
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_TGA
 #define STBI_ONLY_BMP
-#define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS IMAGE_MAX_EDGE
 #define STB_IMAGE_STATIC
@@ -113,35 +111,4 @@ struct image *image_decode(const uint8_t *bytes, size_t size, struct error *out_
         error_set(out_error, "out of memory");
     }
     return image;
-}
-
-float *image_decode_radiance(const uint8_t *bytes, size_t size, uint32_t *out_width,
-                             uint32_t *out_height, struct error *out_error)
-{
-    uint32_t width = 0, height = 0;
-    if (size > INT_MAX || !stbi_is_hdr_from_memory(bytes, (int)size)) {
-        error_set(out_error, "not a Radiance HDR picture");
-        return NULL;
-    }
-    if (!image_decode_size(bytes, size, &width, &height, out_error)) {
-        return NULL;
-    }
-    int got_width = 0, got_height = 0, channels = 0;
-    allocation_limit_bytes = (size_t)width * height * 16 + (1 << 20);
-    float *pixels = stbi_loadf_from_memory(bytes, (int)size, &got_width, &got_height, &channels, 3);
-    if (!pixels || got_width != (int)width || got_height != (int)height) {
-        free(pixels);
-        error_set(out_error, "a damaged Radiance picture, or out of memory");
-        return NULL;
-    }
-    for (size_t i = 0; i < (size_t)width * height * 3; i++) {
-        if (!(pixels[i] >= 0.0f)) {
-            pixels[i] = 0.0f;
-        } else if (!isfinite(pixels[i])) {
-            pixels[i] = 3e38f;
-        }
-    }
-    *out_width = width;
-    *out_height = height;
-    return pixels;
 }

@@ -1,5 +1,4 @@
-// Decodes picture files from memory: PNG, JPEG, TGA, BMP and WebP to 8-bit RGBA, Radiance to
-// floats.
+// Decodes picture files from memory: PNG, JPEG, TGA, BMP and WebP to 8-bit RGBA.
 #ifndef VOXCAST_RENDERER_IMAGE_IMAGE_DECODE_H
 #define VOXCAST_RENDERER_IMAGE_IMAGE_DECODE_H
 
@@ -17,10 +16,5 @@ bool image_decode_size(const uint8_t *bytes, size_t size, uint32_t *out_width, u
 // The decoded picture, one reference of which the caller owns; NULL with a message on failure.
 // Allocates no more than a small multiple of the picture's own size. Any thread.
 struct image *image_decode(const uint8_t *bytes, size_t size, struct error *out_error);
-
-// A Radiance HDR picture as width x height x 3 linear floats, row 0 at the top, all finite and at
-// least 0; the caller frees them. NULL, and untouched outputs, on failure. Any thread.
-float *image_decode_radiance(const uint8_t *bytes, size_t size, uint32_t *out_width,
-                             uint32_t *out_height, struct error *out_error);
 
 #endif

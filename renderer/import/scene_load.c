@@ -81,9 +81,37 @@ static void add_default_sky(struct scene *scene)
     scene_add_warning(scene, "the file holds no light: a default sky lights it (environment.type)");
 }
 
+// Lights a scene that was loaded. False, and no scene any more, on failure.
+static bool light_scene(struct scene **scene, const char *environment, bool is_file,
+                        struct error *out_error)
+{
+    if (!environment) {
+        if (is_file && !is_lit(*scene)) {
+            add_default_sky(*scene);
+        }
+        return true;
+    }
+    if (!scene_load_environment(environment, &(*scene)->environment, out_error)) {
+        scene_destroy(scene);
+        return false;
+    }
+    const char *warning = (*scene)->environment.image->warning;
+    if (warning[0]) {
+        scene_add_warning(*scene, "environment: %s", warning);
+    }
+    return true;
+}
+
 struct scene *scene_load(const char *source, struct error *out_error)
 {
+    return scene_load_in_environment(source, NULL, out_error);
+}
+
+struct scene *scene_load_in_environment(const char *source, const char *environment,
+                                        struct error *out_error)
+{
     struct scene *scene;
+    bool is_file = false;
     char *canonical = NULL;
     if (strncmp(source, BUILTIN_PREFIX, strlen(BUILTIN_PREFIX)) == 0) {
         canonical = strdup(source);
@@ -95,15 +123,13 @@ struct scene *scene_load(const char *source, struct error *out_error)
             return NULL;
         }
         scene = import_file(canonical, out_error);
-        if (scene && !is_lit(scene)) {
-            add_default_sky(scene);
-        }
+        is_file = true;
     }
     if (scene && !canonical) {
         scene_destroy(&scene);
         error_set(out_error, "out of memory");
     }
-    if (!scene) {
+    if (!scene || !light_scene(&scene, environment, is_file, out_error)) {
         free(canonical);
         return NULL;
     }

@@ -22,7 +22,7 @@ struct environment {
     bool shines, uneven;
 };
 
-static float3 picture_texel(const struct scene_environment *source, int64_t column, int64_t row)
+static float3 picture_texel(const struct environment_image *source, int64_t column, int64_t row)
 {
     int64_t width = source->width, height = source->height;
     column = ((column % width) + width) % width;
@@ -30,7 +30,7 @@ static float3 picture_texel(const struct scene_environment *source, int64_t colu
     return load3(source->pixels + (size_t)(row * width + column) * 3);
 }
 
-static float3 picture_at(const struct scene_environment *source, float3 direction)
+static float3 picture_at(const struct environment_image *source, float3 direction)
 {
     float u = 0.5f + atan2f(direction[0], -direction[2]) / (2.0f * PI);
     float v = acosf(min1(max1(direction[1], -1.0f), 1.0f)) / PI;
@@ -51,7 +51,7 @@ static float3 radiance_of(const struct scene_environment *source, float3 directi
     float3 pole = load3(direction[1] >= 0.0f ? source->color : source->ground_color);
     switch (source->type) {
     case SCENE_ENVIRONMENT_EQUIRECT:
-        return source->pixels ? picture_at(source, direction) : splat3(0.0f);
+        return source->image ? picture_at(source->image, direction) : splat3(0.0f);
     case SCENE_ENVIRONMENT_GRADIENT:
         return horizon + (pole - horizon) * fabsf(direction[1]);
     case SCENE_ENVIRONMENT_CONSTANT:
@@ -65,18 +65,19 @@ static float3 radiance_of(const struct scene_environment *source, float3 directi
 static float cell_luminance(const struct environment *environment, uint32_t column, uint32_t row)
 {
     const struct scene_environment *source = environment->source;
-    if (source->type != SCENE_ENVIRONMENT_EQUIRECT) {
+    if (source->type != SCENE_ENVIRONMENT_EQUIRECT || !source->image) {
         float angle = PI * ((float)row + 0.5f) / (float)environment->rows;
         return luminance3(radiance_of(source, make3(sinf(angle), cosf(angle), 0.0f)));
     }
-    uint32_t left = (uint32_t)((uint64_t)column * source->width / environment->columns);
-    uint32_t right = (uint32_t)((uint64_t)(column + 1) * source->width / environment->columns);
-    uint32_t top = (uint32_t)((uint64_t)row * source->height / environment->rows);
-    uint32_t bottom = (uint32_t)((uint64_t)(row + 1) * source->height / environment->rows);
+    const struct environment_image *image = source->image;
+    uint32_t left = (uint32_t)((uint64_t)column * image->width / environment->columns);
+    uint32_t right = (uint32_t)((uint64_t)(column + 1) * image->width / environment->columns);
+    uint32_t top = (uint32_t)((uint64_t)row * image->height / environment->rows);
+    uint32_t bottom = (uint32_t)((uint64_t)(row + 1) * image->height / environment->rows);
     float sum = 0.0f;
     for (uint32_t y = top; y < bottom; y++)
         for (uint32_t x = left; x < right; x++)
-            sum += max1(luminance3(picture_texel(source, x, y)), 0.0f);
+            sum += max1(luminance3(picture_texel(image, x, y)), 0.0f);
     return sum / (float)((right - left) * (bottom - top));
 }
 
@@ -143,14 +144,15 @@ struct environment *environment_create(const struct scene_environment *source)
     struct environment *environment = calloc(1, sizeof(*environment));
     if (!environment)
         return NULL;
-    bool pictured = source->type == SCENE_ENVIRONMENT_EQUIRECT && source->pixels;
+    bool pictured = source->type == SCENE_ENVIRONMENT_EQUIRECT && source->image;
     environment->source = source;
     environment->sine = sinf(source->rotation_rad);
     environment->cosine = cosf(source->rotation_rad);
     environment->columns =
-        pictured ? (source->width < MAX_COLUMNS ? source->width : MAX_COLUMNS) : 1;
-    environment->rows =
-        pictured ? (source->height < MAX_ROWS ? source->height : MAX_ROWS) : GRADIENT_ROWS;
+        pictured ? (source->image->width < MAX_COLUMNS ? source->image->width : MAX_COLUMNS) : 1;
+    environment->rows = pictured
+                            ? (source->image->height < MAX_ROWS ? source->image->height : MAX_ROWS)
+                            : GRADIENT_ROWS;
     size_t cells = (size_t)environment->columns * environment->rows;
     environment->row_ends = calloc(environment->rows, sizeof(float));
     environment->column_ends = calloc(cells, sizeof(float));

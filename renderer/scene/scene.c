@@ -98,7 +98,7 @@ void scene_destroy(struct scene **scene_slot)
     free(scene->lights);
     free(scene->cameras);
     free(scene->animations);
-    free(scene->environment.pixels);
+    environment_image_release(&scene->environment.image);
     free(scene);
 }
 

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "renderer/parameter_types.h"
+#include "renderer/scene/environment_image.h"
 #include "renderer/image/image.h"
 
 #define SCENE_NONE UINT32_MAX
@@ -168,9 +169,9 @@ struct scene_environment {
     float horizon_color[3];
     float ground_color[3];
     float rotation_rad; // about +Y
-    uint32_t width;     // equirect picture: linear RGB floats, row 0 at the top (+Y); direction
-    uint32_t height;    // of column u: longitude 2 pi (u - 0.5) from -Z towards +X
-    float *pixels;      // owned; NULL unless type is SCENE_ENVIRONMENT_EQUIRECT
+    // One reference, or NULL. It stays while another type is chosen. Direction of column u:
+    // longitude 2 pi (u - 0.5) from -Z towards +X.
+    struct environment_image *image;
 };
 
 struct scene_animation_channel {
@@ -305,7 +306,7 @@ void scene_remove_light(struct scene *scene, uint32_t light);
 // other's values. False if it is not removed.
 bool scene_restore_light(struct scene *scene, uint32_t light);
 
-// Takes ownership of environment->pixels.
+// Takes over the reference of environment->image, which may be the one that is there already.
 void scene_set_environment(struct scene *scene, const struct scene_environment *environment);
 
 // Recomputes world_from_local and world_visible of every node from the local placements.

@@ -30,14 +30,8 @@ struct scene *scene_copy(const struct scene *source)
     for (uint32_t i = 0; i < copy->image_count; i++)
         image_retain(copy->images[i]);
     copy->environment = source->environment;
-    copy->environment.pixels = NULL;
+    environment_image_retain(copy->environment.image);
     copy->revisions = source->revisions;
-    if (source->environment.pixels) {
-        size_t texels = (size_t)source->environment.width * source->environment.height;
-        copy->environment.pixels =
-            copy_array(source->environment.pixels, texels, 3 * sizeof(float));
-        done = done && copy->environment.pixels;
-    }
     if (!done)
         scene_destroy(&copy);
     return copy;

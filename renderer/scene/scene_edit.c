@@ -113,8 +113,8 @@ bool scene_restore_light(struct scene *scene, uint32_t light_id)
 
 void scene_set_environment(struct scene *scene, const struct scene_environment *environment)
 {
-    if (scene->environment.pixels != environment->pixels)
-        free(scene->environment.pixels);
+    if (scene->environment.image != environment->image)
+        environment_image_release(&scene->environment.image);
     scene->environment = *environment;
     scene->revisions.environment++;
 }

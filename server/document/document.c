@@ -300,9 +300,10 @@ static bool check_record(enum parameter_group group, const union record *record,
                          struct rpc_error *error)
 {
     if (group == GROUP_ENVIRONMENT && record->environment.type == SCENE_ENVIRONMENT_EQUIRECT &&
-        !record->environment.pixels)
+        !record->environment.image)
         return rpc_error_field(error, "type", NULL,
-                               "type: equirect needs an environment picture in the scene");
+                               "type: equirect needs an image; environment.load with the name of "
+                               "one that scene.list names gives it, or --environment FILE");
     if (group == GROUP_SETTINGS && record->settings.cone_step > 0.0f &&
         record->settings.cone_step < CONE_STEP_MIN)
         return rpc_error_field(

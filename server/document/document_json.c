@@ -204,7 +204,10 @@ cJSON *document_json_scene(const struct document *document)
     cJSON_AddStringToObject(object, "source", scene->source_path ? scene->source_path : "");
     add_lists(object, document);
     cJSON *environment = document_json_group(document, GROUP_ENVIRONMENT, 0);
-    cJSON_AddBoolToObject(environment, "has_picture", scene->environment.pixels != NULL);
+    const struct environment_image *image = scene->environment.image;
+    cJSON_AddBoolToObject(environment, "has_picture", image != NULL);
+    cJSON_AddItemToObject(environment, "image",
+                          image ? cJSON_CreateString(image->name) : cJSON_CreateNull());
     cJSON_AddItemToObject(object, "environment", environment);
     cJSON_AddItemToObject(object, "settings", document_json_group(document, GROUP_SETTINGS, 0));
     add_bounds(object, scene);

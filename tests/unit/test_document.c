@@ -180,7 +180,7 @@ static void text_keys_reach_their_fields(void **state)
     refuse(fixture, "cone_step", "2.5", "allowed are 0 to 2");
     refuse(fixture, "lights.0", "1", "want lights.ID.FIELD");
     refuse(fixture, "colour", "1", "no such key");
-    refuse(fixture, "environment.type", "equirect", "needs an environment picture");
+    refuse(fixture, "environment.type", "equirect", "needs an image");
     refuse(fixture, "camera.target", "1,2,3", "lies in the eye");
 }
 

@@ -41,12 +41,12 @@ static void test_radiance_environment(void **state)
     assert_true(scene_load_environment(path, &environment, &error));
     unlink(path);
     assert_int_equal(environment.type, SCENE_ENVIRONMENT_EQUIRECT);
-    assert_int_equal(environment.width, 2);
-    assert_int_equal(environment.height, 1);
+    assert_int_equal(environment.image->width, 2);
+    assert_int_equal(environment.image->height, 1);
     for (int i = 0; i < 6; i++) {
-        assert_float_equal(environment.pixels[i], EXPECTED[i], 0);
+        assert_float_equal(environment.image->pixels[i], EXPECTED[i], 0);
     }
-    free(environment.pixels);
+    environment_image_release(&environment.image);
 }
 
 static void test_other_files_leave_the_environment(void **state)
@@ -62,7 +62,7 @@ static void test_other_files_leave_the_environment(void **state)
     assert_false(scene_load_environment(path, &environment, &error)); // gone
     assert_int_equal(environment.type, SCENE_ENVIRONMENT_CONSTANT);
     assert_float_equal(environment.intensity, 3, 0);
-    assert_null(environment.pixels);
+    assert_null(environment.image);
 }
 
 // A BMP header of the given size with no pixels behind it.

@@ -138,16 +138,15 @@ static void test_environment_picture(void **state)
     scene->materials[specular].ior = 1.5f;
     scene->materials[specular].roughness = 0.3f;
     support_add_box(scene, specular, (float[3]){-0.5f, -0.5f, 0}, (float[3]){0.5f, 0.5f, 1});
-    struct scene_environment sky = {.type = SCENE_ENVIRONMENT_EQUIRECT,
-                                    .intensity = 2.0f,
-                                    .rotation_rad = 0.7f,
-                                    .width = 32,
-                                    .height = 16};
-    sky.pixels = calloc(32 * 16, 3 * sizeof(float));
-    assert_non_null(sky.pixels);
+    struct scene_environment sky = {
+        .type = SCENE_ENVIRONMENT_EQUIRECT, .intensity = 2.0f, .rotation_rad = 0.7f};
+    float *pixels = calloc(32 * 16, 3 * sizeof(float));
+    assert_non_null(pixels);
     for (int i = 0; i < 32 * 16; i++)
         for (int c = 0; c < 3; c++)
-            sky.pixels[3 * i + c] = i == 7 * 32 + 12 ? 60.0f : 0.2f + 0.1f * (float)c;
+            pixels[3 * i + c] = i == 7 * 32 + 12 ? 60.0f : 0.2f + 0.1f * (float)c;
+    sky.image = environment_image_create(32, 16, pixels);
+    assert_non_null(sky.image);
     scene_set_environment(scene, &sky);
     struct reference_params params =
         support_narrow_view((float[3]){1.5f, -4, 3}, (float[3]){0, 0, 0.3f});

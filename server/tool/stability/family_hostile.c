@@ -10,6 +10,7 @@
 #include "protocol/command.h"
 #include "renderer/clock.h"
 #include "renderer/image/file_access.h"
+#include "renderer/scene/environment_image.h"
 #include "renderer/import/import_memory.h"
 #include "server/tool/stability/hostile.h"
 #include "server/tool/stability/mutation.h"
@@ -78,6 +79,28 @@ static const char *try_import(import_function *import, const uint8_t *bytes, siz
     return took_ms > MAX_IMPORT_MS ? "takes too long" : broken;
 }
 
+// What the decoder of environment images broke; NULL for nothing.
+static const char *try_environment(const uint8_t *bytes, size_t size, uint32_t *taken_count)
+{
+    uint8_t *copy = malloc(size + 1);
+    if (!copy)
+        return "out of memory";
+    memcpy(copy, bytes, size);
+    struct error error = {""};
+    double from_ms = clock_now_ms();
+    struct environment_image *image = environment_image_decode(copy, size, &error);
+    double took_ms = clock_now_ms() - from_ms;
+    const char *broken = image || strlen(error.message) >= 10 ? NULL : "refused without a reason";
+    for (size_t i = 0; image && i < (size_t)image->width * image->height * 3; i++)
+        if (!(image->pixels[i] >= 0.0f && image->pixels[i] <= ENVIRONMENT_MAX_RADIANCE))
+            broken = "a texel that is no radiance was taken";
+    *taken_count += image != NULL;
+    environment_image_release(&image);
+    free(copy);
+    return took_ms > MAX_IMPORT_MS ? "takes too long" : broken;
+}
+
+// With an importer of scenes, or NULL for an environment.
 static void mutate_file(struct stability_run *run, const char *name, import_function *import,
                         uint32_t *broken_count)
 {
@@ -91,7 +114,8 @@ static void mutate_file(struct stability_run *run, const char *name, import_func
     for (uint32_t i = 0; i < FILE_MUTATIONS; i++) {
         struct random_numbers random = {i};
         size_t size = mutate(&random, source.bytes, source.size, mutated, 2 * source.size);
-        const char *broken = try_import(import, mutated, size, &taken_count);
+        const char *broken = import ? try_import(import, mutated, size, &taken_count)
+                                    : try_environment(mutated, size, &taken_count);
         *broken_count += broken != NULL;
         stability_measure(run, *broken_count, "%s, mutation %u: %s", name, i,
                           broken ? broken : "good");
@@ -111,6 +135,18 @@ static void run_files(struct stability_run *run)
         mutate_file(run, gltf[i], scene_import_gltf_memory, &broken);
     for (size_t i = 0; i < sizeof(obj) / sizeof(obj[0]); i++)
         mutate_file(run, obj[i], scene_import_obj_memory, &broken);
+}
+
+static void run_environments(struct stability_run *run)
+{
+    static const char *const names[] = {"half.exr", "tiles.exr", "rle.exr",  "zip.exr", "piz.exr",
+                                        "b44.exr",  "pxr24.exr", "flat.hdr", "rle.hdr"};
+    uint32_t broken = 0;
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+        char path[64];
+        snprintf(path, sizeof(path), "environment/%s", names[i]);
+        mutate_file(run, path, NULL, &broken);
+    }
 }
 
 static bool is_in_range(const struct parameter_value *value)
@@ -316,6 +352,13 @@ static const struct stability_case cases[] = {
      .methods = STABILITY_NONE,
      .unit = "broken files",
      .run = run_files},
+    {.name = "mutated-environments",
+     .invariant =
+         "90,000 mutations of good OpenEXR and Radiance files are refused with a reason or "
+         "give an image of finite radiance",
+     .methods = STABILITY_NONE,
+     .unit = "broken files",
+     .run = run_environments},
     {.name = "mutated-messages",
      .invariant = "200,000 mutations of good messages are refused with a reason or hold values "
                   "within their ranges",
