@@ -68,6 +68,9 @@ cJSON *accuracy_identity(const char *source, const char *const *sets, uint32_t s
     uint64_t hash = HASH_START;
     for (uint32_t i = 0; i < shot->scene->source_file_count; i++)
         hash = hash_path(hash, shot->scene->source_files[i]);
+    const struct environment_image *image = shot->scene->environment.image;
+    if (image && image->path)
+        hash = hash_path(hash, image->path);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "version", VOXCAST_VERSION);
     cJSON_AddStringToObject(json, "source", source);

@@ -49,7 +49,8 @@ static const char usage[] =
     "                       1 to 1000 (default 12)\n"
     "  --edits N            edits of a light that are measured, 0 to 100 (default 1)\n"
     "  --size WxH           1x1 to 4096x2160 (default 640x360)\n"
-    "  --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu   as voxcast render;\n"
+    "  --environment, --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu   as\n"
+    "                           voxcast render;\n"
     "                       --gi and --set hold for the rungs that do not say otherwise\n";
 
 struct accuracy_options {

@@ -23,10 +23,11 @@ static const char usage[] =
     "\n"
     "  --frames N      frames measured per scene, 1 to 10000 (default 60)\n"
     "  --preset NAME   draft, interactive, high or final (default interactive)\n"
+    "  --environment FILE   .hdr or .exr that lights the scenes\n"
     "  --gpu WHICH     auto, software or a device index (default auto)\n";
 
 struct bench_options {
-    const char *gpu;
+    const char *gpu, *environment;
     uint32_t frames;
     uint32_t quality;
 };
@@ -58,7 +59,7 @@ static bool bench_scene(struct renderer *renderer, const char *source,
                         struct error *out_error)
 {
     double started_ms = clock_now_ms();
-    struct scene *scene = scene_load(source, out_error);
+    struct scene *scene = scene_load_in_environment(source, options->environment, out_error);
     if (!scene)
         return false;
     double loaded_ms = clock_now_ms();
@@ -112,6 +113,7 @@ int cli_bench(int argc, char **argv)
     cli_take_count(&parser, "frames", 1, MAX_FRAMES, &options.frames);
     cli_take_preset(&parser, &options.quality);
     cli_take_gpu(&parser, &options.gpu);
+    cli_take_text(&parser, "environment", &options.environment);
     if (!cli_parse(&parser, argc, argv, &status))
         return status;
     struct error error = {""};

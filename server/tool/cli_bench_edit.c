@@ -35,7 +35,8 @@ static const char usage[] =
     "  --size WxH      1x1 to 4096x2160 (default 640x360)\n"
     "  --preset NAME   draft, interactive, high or final (default interactive)\n"
     "  --json          JSON on stdout\n"
-    "  --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu   as voxcast render\n";
+    "  --environment, --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu\n"
+    "                  as voxcast render\n";
 
 struct edit_options {
     struct cli_shot_options shot;

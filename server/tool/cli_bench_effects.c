@@ -27,10 +27,11 @@ static const char usage[] =
     "  --size WxH      1x1 to 4096x2160 (default 640x360)\n"
     "  --frames N      frames measured of each, 1 to 10000 (default 30)\n"
     "  --json          JSON on stdout; the table goes to stderr\n"
+    "  --environment FILE   .hdr or .exr that lights the scenes\n"
     "  --gpu WHICH     auto, software or a device index (default auto)\n";
 
 struct effects_options {
-    const char *gpu;
+    const char *gpu, *environment;
     struct cli_size size;
     uint32_t frames, quality;
     uint32_t gi; // CLI_NO_CHOICE: as settings have it
@@ -114,7 +115,7 @@ static void report(FILE *file, const char *source, const struct bench_result *pl
 
 static bool run_scene(struct effects_bench *bench, const char *source, struct error *out_error)
 {
-    struct scene *scene = scene_load(source, out_error);
+    struct scene *scene = scene_load_in_environment(source, bench->options->environment, out_error);
     if (!scene)
         return false;
     cJSON *entry = cJSON_CreateObject();
@@ -167,6 +168,7 @@ int bench_effects(int argc, char **argv)
     cli_take_count(&parser, "frames", 1, MAX_FRAMES, &options.frames);
     cli_take_flag(&parser, "json", &options.json);
     cli_take_gpu(&parser, &options.gpu);
+    cli_take_text(&parser, "environment", &options.environment);
     if (!cli_parse(&parser, argc, argv, &status))
         return status;
     struct error error = {""};

@@ -26,12 +26,14 @@ static const char usage[] =
     "of that by processor time, which holds on a busy machine, too; for direct light (primary\n"
     "and shadow rays) and for light of all bounces.\n"
     "\n"
+    "  --environment FILE   .hdr or .exr that lights the scenes\n"
     "  --size WxH      1x1 to 4096x2160 (default 640x360)\n"
     "  --spp N         samples per pixel and round, 1 to 64 (default 4)\n"
     "  --rounds N      1 to 1000 (default 5)\n"
     "  --threads N     1 to 256 (default: as many as there are processors)\n";
 
 struct reference_bench {
+    const char *environment;
     struct cli_size size;
     uint32_t spp, rounds, threads;
 };
@@ -79,7 +81,7 @@ static bool measure(const struct reference_bench *bench, const struct reference_
 static bool bench_scene(const struct reference_bench *bench, const char *source, cJSON *list,
                         struct error *out_error)
 {
-    struct scene *scene = scene_load(source, out_error);
+    struct scene *scene = scene_load_in_environment(source, bench->environment, out_error);
     if (!scene)
         return false;
     struct reference_params params = {
@@ -113,6 +115,7 @@ int bench_reference(int argc, char **argv)
         .command = "bench reference", .usage = usage, .max_arguments = CLI_MAX_ARGUMENTS};
     int status;
     cli_take_size(&parser, &bench.size);
+    cli_take_text(&parser, "environment", &bench.environment);
     cli_take_count(&parser, "spp", 1, MAX_SPP, &bench.spp);
     cli_take_count(&parser, "rounds", 1, MAX_ROUNDS, &bench.rounds);
     cli_take_count(&parser, "threads", 1, REFERENCE_MAX_THREADS, &bench.threads);

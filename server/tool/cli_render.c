@@ -18,6 +18,7 @@ static const char usage[] =
     "  --camera NAME|INDEX  a camera of the scene (default: the first, or one that frames it)\n"
     "  --eye X,Y,Z --target X,Y,Z [--up X,Y,Z]   a camera of your own, in metres\n"
     "  --fov-y-deg D        vertical field of view in degrees, 0.1 to 179\n"
+    "  --environment FILE   .hdr or .exr, an equirectangular image that lights the scene\n"
     "  --size WxH           1x1 to 4096x2160 (default 1280x720)\n"
     "  --gi METHOD          method of global illumination: none, clipmap, grid or reference\n"
     "  --preset NAME        draft, interactive, high or final (default: final; with several\n"

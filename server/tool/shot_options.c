@@ -9,6 +9,7 @@ void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target)
     target->camera = (struct cli_camera){0};
     cli_take_size(parser, &target->size);
     cli_take_gpu(parser, &target->gpu);
+    cli_take_text(parser, "environment", &target->environment);
     cli_take_camera(parser, &target->camera);
     cli_take_settings(parser, &target->settings);
 }
@@ -41,7 +42,8 @@ int cli_shot_load(const struct cli_shot_options *options, enum quality preset,
                   struct shot *out_shot)
 {
     struct error error = {""};
-    struct shot shot = {.scene = scene_load(options->source, &error)};
+    struct shot shot = {
+        .scene = scene_load_in_environment(options->source, options->environment, &error)};
     if (!shot.scene)
         return cli_fail(CLI_EXIT_SCENE, "%s", error.message);
     for (uint32_t i = 0; i < shot.scene->warning_count; i++)

@@ -6,14 +6,16 @@
 #include "server/tool/tool_options.h"
 
 struct cli_shot_options {
-    const char *source; // file or builtin:NAME
+    const char *source;      // file or builtin:NAME
+    const char *environment; // file of an equirectangular image; NULL for the scene's own
     const char *gpu;
     struct cli_size size;
     struct cli_camera camera;
     struct cli_settings settings;
 };
 
-// Declares --size, --gpu and the options of camera and settings; initialises them but the size.
+// Declares --size, --gpu, --environment and the options of camera and settings; initialises them
+// but the size.
 void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target);
 
 // Loads the scene, prints its warnings and applies the options; there is no renderer then. `preset`
