@@ -29,6 +29,7 @@ enum field_bit {
     SWEEP = 1 << 16,
     NOISE = 1 << 17,
     SECONDS = 1 << 18,
+    FILE_NAME = 1 << 19,
 };
 
 struct field {
@@ -55,6 +56,7 @@ static const struct field fields[] = {
     {"resume_epoch", RESUME_EPOCH, FIELD_INTEGER, 0, PROTOCOL_MAX_SAFE_INTEGER},
     {"resume_revision", RESUME_REVISION, FIELD_INTEGER, 0, PROTOCOL_MAX_SAFE_INTEGER},
     {"source", SOURCE, FIELD_STRING, 0, PROTOCOL_MAX_SOURCE_BYTES},
+    {"name", FILE_NAME, FIELD_STRING, 0, PROTOCOL_MAX_SOURCE_BYTES},
     {"x", PIXEL_X, FIELD_NUMBER, 0, 4096},
     {"y", PIXEL_Y, FIELD_NUMBER, 0, 2160},
     {"ladder", SWEEP, FIELD_CHOICE, 0, 0, command_sweep_names},
@@ -91,6 +93,8 @@ static const struct method_row methods[METHOD_COUNT] = {
     [METHOD_NODE_UPDATE] = {"node.update", MERGES, GROUP_NODE, TARGET | SET | EDIT, TARGET | SET},
     [METHOD_ENVIRONMENT_UPDATE] = {"environment.update", MERGES, GROUP_ENVIRONMENT, SET | EDIT,
                                    SET},
+    [METHOD_ENVIRONMENT_LOAD] = {"environment.load", METHOD_EDITS, GROUP_COUNT, FILE_NAME | EDIT_ID,
+                                 FILE_NAME},
     [METHOD_SETTINGS_UPDATE] = {"settings.update", MERGES, GROUP_SETTINGS, SET | EDIT, SET},
     [METHOD_ANIMATION_SET] = {"animation.set", MERGES, GROUP_ANIMATION, TARGET | SET | EDIT,
                               TARGET | SET},
@@ -210,6 +214,7 @@ static void store_field(const struct field *field, const cJSON *item, struct com
         command->resume_revision = (uint64_t)number;
         break;
     case SOURCE:
+    case FILE_NAME:
         strcpy(command->source, item->valuestring);
         break;
     case PIXEL_X:

@@ -24,6 +24,7 @@ enum method {
     METHOD_MATERIAL_UPDATE,
     METHOD_NODE_UPDATE,
     METHOD_ENVIRONMENT_UPDATE,
+    METHOD_ENVIRONMENT_LOAD,
     METHOD_SETTINGS_UPDATE,
     METHOD_ANIMATION_SET,
     METHOD_EDIT_UNDO,
@@ -69,7 +70,7 @@ struct command {
     double noise, seconds;    // likewise
     char name[PROTOCOL_MAX_NAME_BYTES + 1];
     char token[PROTOCOL_MAX_TOKEN_BYTES + 1];
-    char source[PROTOCOL_MAX_SOURCE_BYTES + 1];
+    char source[PROTOCOL_MAX_SOURCE_BYTES + 1]; // also `name` of environment.load
     uint32_t value_count;
     struct parameter_value values[COMMAND_MAX_VALUES];
     uint32_t superseded_count; // edit ids that this command stands for beside its own

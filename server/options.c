@@ -35,6 +35,7 @@ struct option_row {
 static const struct option_row rows[] = {
     TEXT("scene", scene, OPTIONS_DEFAULT_SCENE, "SCENE",
          "file or builtin:NAME; also without --scene"),
+    TEXT("environment", environment, "", "FILE", ".hdr or .exr image that lights that scene"),
     TEXT("listen", listen, "127.0.0.1", "ADDRESS", "address to listen on"),
     NUMBER("port", port, "8080", 0, 65535, "TCP port; 0 takes a free one and prints it"),
     TEXT("gpu", gpu, "auto", "DEVICE", "auto, software, or the number of a device"),

@@ -13,8 +13,9 @@
 
 struct options {
     char scene[OPTIONS_TEXT_SIZE];
-    char listen[OPTIONS_TEXT_SIZE]; // address
-    uint32_t port;                  // 0: any free one
+    char environment[OPTIONS_TEXT_SIZE]; // .hdr or .exr; "" for the scene's own
+    char listen[OPTIONS_TEXT_SIZE];      // address
+    uint32_t port;                       // 0: any free one
     char gpu[OPTIONS_TEXT_SIZE];
     char scene_dir[OPTIONS_TEXT_SIZE]; // "" for none; likewise below
     char web_dir[OPTIONS_TEXT_SIZE];

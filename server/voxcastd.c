@@ -140,6 +140,7 @@ static bool start_threads(struct daemon *daemon, struct error *error)
     daemon->render = render_thread_start(&(struct render_thread_params){
         .gpu = options->gpu,
         .scene_source = options->scene,
+        .environment = options->environment[0] ? options->environment : NULL,
         .scene_dir = options->scene_dir[0] ? options->scene_dir : NULL,
         .message_bytes = options->message_bytes,
         .message_rate = options->message_rate,

@@ -5,17 +5,26 @@
 
 #include "server/document/document_json.h"
 
+static void free_step(struct edit_step *step)
+{
+    if (step) {
+        environment_image_release(&step->image_before);
+        environment_image_release(&step->image_after);
+    }
+    free(step);
+}
+
 void edit_history_clear(struct edit_history *history)
 {
     for (uint32_t i = 0; i < history->count; i++)
-        free(history->steps[i]);
+        free_step(history->steps[i]);
     memset(history, 0, sizeof(*history));
 }
 
 static void drop_redo(struct edit_history *history)
 {
     while (history->count > history->position)
-        free(history->steps[--history->count]);
+        free_step(history->steps[--history->count]);
 }
 
 static bool continues(const struct edit_step *step, const struct edit_step *next)
@@ -30,6 +39,25 @@ static bool continues(const struct edit_step *step, const struct edit_step *next
     return true;
 }
 
+static void drop_oldest(struct edit_history *history)
+{
+    free_step(history->steps[0]);
+    history->count--;
+    memmove(&history->steps[0], &history->steps[1], history->count * sizeof(history->steps[0]));
+    history->position = history->count;
+}
+
+// Those before the newest step's own.
+static uint64_t image_bytes(const struct edit_history *history)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < history->count; i++) {
+        const struct environment_image *image = history->steps[i]->image_before;
+        bytes += image ? (uint64_t)image->width * image->height * sizeof(float[3]) : 0;
+    }
+    return bytes;
+}
+
 // Takes over `step`; NULL, from a failed allocation, costs an undo step.
 static void record(struct edit_history *history, struct edit_step *step)
 {
@@ -40,16 +68,15 @@ static void record(struct edit_history *history, struct edit_step *step)
     if (top && continues(top, step)) {
         memcpy(top->after, step->after, sizeof(top->after));
         top->open = step->open;
-        free(step);
+        free_step(step);
         return;
     }
-    if (history->count == EDIT_HISTORY_STEPS) {
-        free(history->steps[0]);
-        history->count--;
-        memmove(&history->steps[0], &history->steps[1], history->count * sizeof(step));
-    }
+    if (history->count == EDIT_HISTORY_STEPS)
+        drop_oldest(history);
     history->steps[history->count++] = step;
     history->position = history->count;
+    while (history->count > 1 && image_bytes(history) > EDIT_HISTORY_IMAGE_BYTES)
+        drop_oldest(history);
 }
 
 // All values of a light, so that it can come back as it was.
@@ -257,10 +284,60 @@ static enum method opposite(enum method method)
     return method == METHOD_LIGHT_REMOVE ? METHOD_LIGHT_ADD : method;
 }
 
+static void get_environment_type(const struct document *document, struct parameter_value *value)
+{
+    document_get(document, parameter_find(GROUP_ENVIRONMENT, "type"), 0, value);
+}
+
+// `type` is that of parameters; the image may be NULL. Returns the edit.
+static cJSON *set_environment(const struct document *document, struct environment_image *image,
+                              const struct parameter_value *type)
+{
+    struct scene_environment environment = document->scene->environment;
+    if (environment.image != image)
+        environment.image = environment_image_retain(image);
+    environment.type = (enum scene_environment_type)type->numbers[0];
+    scene_set_environment(document->scene, &environment);
+    cJSON *edit = cJSON_CreateObject();
+    cJSON_AddStringToObject(edit, "method", method_name(METHOD_ENVIRONMENT_LOAD));
+    cJSON_AddItemToObject(edit, "name",
+                          image ? cJSON_CreateString(image->name) : cJSON_CreateNull());
+    cJSON_AddItemToObject(edit, "set", document_json_values(type, 1));
+    return edit;
+}
+
+cJSON *edit_load_environment(const struct document *document, struct edit_history *history,
+                             struct environment_image *image)
+{
+    struct edit_step *step = history ? calloc(1, sizeof(*step)) : NULL;
+    struct parameter_value type = {0};
+    get_environment_type(document, &type);
+    if (step) {
+        step->method = METHOD_ENVIRONMENT_LOAD;
+        step->target = COMMAND_NO_TARGET;
+        step->value_count = 1;
+        step->before[0] = type;
+        step->image_before = environment_image_retain(document->scene->environment.image);
+        step->image_after = environment_image_retain(image);
+    }
+    type.numbers[0] = SCENE_ENVIRONMENT_EQUIRECT;
+    if (step) {
+        step->after[0] = type;
+        record(history, step);
+    }
+    return set_environment(document, image, &type);
+}
+
 // Makes a command of a step and applies it, forwards or backwards.
 static bool replay(const struct document *document, const struct edit_step *step, bool backwards,
                    cJSON *result, cJSON **out_edit, struct rpc_error *error)
 {
+    if (step->method == METHOD_ENVIRONMENT_LOAD) {
+        *out_edit = backwards ? set_environment(document, step->image_before, &step->before[0])
+                              : set_environment(document, step->image_after, &step->after[0]);
+        cJSON_AddStringToObject(result, "method", method_name(step->method));
+        return true;
+    }
     struct command *command = calloc(1, sizeof(*command));
     if (!command)
         return rpc_error_set(error, RPC_INTERNAL_ERROR, "out of memory");
@@ -310,7 +387,7 @@ bool edit_apply(const struct document *document, struct edit_history *history,
     struct edit_step *step = create_step(document, command);
     *out_edit = apply(document, command, result, out_error);
     if (!*out_edit) {
-        free(step);
+        free_step(step);
         return false;
     }
     if (step) {

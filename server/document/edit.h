@@ -10,6 +10,9 @@
 #include "server/document/document.h"
 
 #define EDIT_HISTORY_STEPS 64u
+// Images of environments that the steps of one client keep for undo. Beyond, the oldest steps go;
+// the newest stays.
+#define EDIT_HISTORY_IMAGE_BYTES (512ull << 20)
 
 // One undo step: what an edit changed.
 struct edit_step {
@@ -19,6 +22,7 @@ struct edit_step {
     uint32_t value_count;
     struct parameter_value before[COMMAND_MAX_VALUES];
     struct parameter_value after[COMMAND_MAX_VALUES];
+    struct environment_image *image_before, *image_after; // of environment.load; a reference each
 };
 
 // One client's edits: steps below `position` can be undone, the others redone. Zero is empty.
@@ -30,11 +34,17 @@ struct edit_history {
 
 void edit_history_clear(struct edit_history *history);
 
-// Applies a command with METHOD_EDITS other than scene.load. On success `out_edit` is the member of
-// `edits` that PROTOCOL.md describes, without revision, the caller's; it is NULL if there was
-// nothing to undo or redo. What the reply holds besides is added to `result`.
+// Applies a command with METHOD_EDITS other than scene.load and environment.load. On success
+// `out_edit` is the member of `edits` that PROTOCOL.md describes, without revision, the caller's;
+// it is NULL if there was nothing to undo or redo. What the reply holds besides is added to
+// `result`.
 bool edit_apply(const struct document *document, struct edit_history *history,
                 struct command *command, cJSON *result, cJSON **out_edit,
                 struct rpc_error *out_error);
+
+// Shows an image as the environment, keeping references of its own. Returns the edit as above. The
+// history may be NULL: then nobody can take it back.
+cJSON *edit_load_environment(const struct document *document, struct edit_history *history,
+                             struct environment_image *image);
 
 #endif

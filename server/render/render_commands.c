@@ -220,6 +220,20 @@ static void broadcast_edit(struct render_thread *thread, const struct render_cli
     edit_log_add(&thread->log, thread->revision, edit);
 }
 
+void render_publish_edit(struct render_thread *thread, struct render_client *client,
+                         const struct command *command, cJSON *edit)
+{
+    // What takes long to load may come after later edits.
+    if (client && command->has_edit_id && command->edit_id > client->edit_id)
+        client->edit_id = command->edit_id;
+    thread->revision++;
+    pthread_mutex_lock(&thread->status_mutex);
+    thread->status.revision = thread->revision;
+    pthread_mutex_unlock(&thread->status_mutex);
+    broadcast_edit(thread, client, command, edit);
+    render_mark_moving(thread, NULL);
+}
+
 static void run_edit(struct render_thread *thread, struct render_client *client,
                      struct command *command)
 {
@@ -234,14 +248,8 @@ static void run_edit(struct render_thread *thread, struct render_client *client,
     }
     if (command->has_edit_id)
         client->edit_id = command->edit_id;
-    if (edit) {
-        thread->revision++;
-        pthread_mutex_lock(&thread->status_mutex);
-        thread->status.revision = thread->revision;
-        pthread_mutex_unlock(&thread->status_mutex);
-        broadcast_edit(thread, client, command, edit);
-        render_mark_moving(thread, NULL);
-    }
+    if (edit)
+        render_publish_edit(thread, client, command, edit);
     cJSON_AddNumberToObject(result, "revision", (double)thread->revision);
     if (command->has_edit_id)
         cJSON_AddNumberToObject(result, "edit_id", (double)command->edit_id);
@@ -280,6 +288,9 @@ void render_run_command(struct render_thread *thread, struct command *command)
         break;
     case METHOD_SCENE_LOAD:
         render_run_scene_load(thread, command);
+        break;
+    case METHOD_ENVIRONMENT_LOAD:
+        render_run_environment_load(thread, command);
         break;
     case METHOD_TEXTURE_GET:
         run_texture_get(thread, command);

@@ -10,6 +10,7 @@
 #include "server/document/document.h"
 #include "server/document/edit.h"
 #include "server/document/edit_log.h"
+#include "server/environment_loader.h"
 #include "server/render/file_watch.h"
 #include "server/render/quality_controller.h"
 #include "server/render/render_thread.h"
@@ -75,6 +76,14 @@ struct render_thread {
     struct rpc_id load_id;   // who asked; "" for nobody
     uint32_t load_client_id; // 0: start or hot reload
     bool reload_wanted;
+    bool client_chose_scene; // then the environment of the start counts no more
+
+    struct environment_loader *environment_loader;
+    struct command *environment_command; // whose load is under way; NULL for a hot reload; owned
+    uint64_t environment_epoch;          // of the document that it is for
+    struct file_watch *environment_watch;
+    uint64_t environment_watched; // serial of the image whose file is watched, or 0
+    bool environment_reload_wanted;
 
     uint32_t next_client;
     uint64_t refined_at_us; // newest frame that only made a picture better
@@ -94,6 +103,15 @@ cJSON *render_author(const struct render_client *client); // null without a clie
 
 // render_commands.c
 void render_run_command(struct render_thread *thread, struct command *command);
+
+// Counts an edit that was applied, tells it to all clients and has pictures drawn. Takes over
+// `edit`. `client` is NULL for what nobody did.
+void render_publish_edit(struct render_thread *thread, struct render_client *client,
+                         const struct command *command, cJSON *edit);
+
+// render_environment.c
+void render_run_environment_load(struct render_thread *thread, const struct command *command);
+void render_poll_environment(struct render_thread *thread);
 
 // render_scenes.c
 void render_start_load(struct render_thread *thread, const char *source, const char *label,

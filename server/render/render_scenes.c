@@ -37,7 +37,9 @@ void render_start_load(struct render_thread *thread, const char *source, const c
                        const struct command *command)
 {
     char *copy = strdup(source);
-    if (!copy || !scene_loader_start(thread->loader, copy)) {
+    const char *environment =
+        command || thread->client_chose_scene ? NULL : thread->params.environment;
+    if (!copy || !scene_loader_start(thread->loader, copy, environment)) {
         free(copy);
         struct rpc_error error;
         rpc_error_set(&error, RPC_BUSY, "another scene is being loaded");
@@ -88,6 +90,16 @@ void render_run_scene_list(struct render_thread *thread, const struct command *c
         cJSON_AddStringToObject(item, "source", sources[i]);
         cJSON_AddStringToObject(item, "description", "");
         cJSON_AddItemToArray(scenes, item);
+        free(sources[i]);
+    }
+    count = sources ? scene_loader_list_environments(thread->params.scene_dir, sources,
+                                                     MAX_LISTED_SCENES)
+                    : 0;
+    cJSON *environments = cJSON_AddArrayToObject(result, "environments");
+    for (uint32_t i = 0; i < count; i++) {
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, "name", sources[i]);
+        cJSON_AddItemToArray(environments, item);
         free(sources[i]);
     }
     free(sources);
@@ -142,6 +154,7 @@ static bool swap_scene(struct render_thread *thread, struct scene *scene, struct
     free(thread->animations);
     thread->scene = scene;
     thread->animations = animations;
+    thread->client_chose_scene = thread->client_chose_scene || thread->load_client_id != 0;
     thread->epoch++;
     thread->revision++;
     snprintf(thread->scene_label, sizeof(thread->scene_label), "%s", thread->load_label);

@@ -141,6 +141,7 @@ static void turn(struct render_thread *thread)
         free(command);
     }
     render_poll_scenes(thread);
+    render_poll_environment(thread);
     poll_shaders(thread);
     uint64_t deadline_us = animate(thread);
     uint64_t idle_us = render_idle_from_us(thread);
@@ -253,11 +254,16 @@ struct render_thread *render_thread_start(const struct render_thread_params *par
     render_settings_init(&thread->settings);
     pthread_mutex_init(&thread->status_mutex, NULL);
     thread->loader = scene_loader_create(wake, thread);
+    thread->environment_loader = environment_loader_create(wake, thread);
     thread->watch = file_watch_create(wake, thread);
+    thread->environment_watch = file_watch_create(wake, thread);
     thread->shader_watch = file_watch_create(wake, thread);
-    if (!thread->loader || pthread_create(&thread->thread, NULL, run, thread) != 0) {
+    if (!thread->loader || !thread->environment_loader ||
+        pthread_create(&thread->thread, NULL, run, thread) != 0) {
         scene_loader_destroy(&thread->loader);
+        environment_loader_destroy(&thread->environment_loader);
         file_watch_destroy(&thread->watch);
+        file_watch_destroy(&thread->environment_watch);
         file_watch_destroy(&thread->shader_watch);
         pthread_mutex_destroy(&thread->status_mutex);
         free(thread);
@@ -280,7 +286,10 @@ void render_thread_destroy(struct render_thread **thread)
     render_thread_stop(t);
     pthread_join(t->thread, NULL);
     scene_loader_destroy(&t->loader);
+    environment_loader_destroy(&t->environment_loader);
+    free(t->environment_command);
     file_watch_destroy(&t->watch);
+    file_watch_destroy(&t->environment_watch);
     file_watch_destroy(&t->shader_watch);
     edit_log_clear(&t->log);
     free(t->animations);

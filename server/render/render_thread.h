@@ -17,6 +17,7 @@ struct render_thread;
 struct render_thread_params {
     const char *gpu;
     const char *scene_source;                          // path or "builtin:NAME"
+    const char *environment;                           // of that scene; NULL for its own
     const char *scene_dir;                             // what clients may load from; NULL for none
     uint32_t message_bytes, message_rate, max_clients; // told to clients
     struct mailbox *mailbox;

@@ -17,6 +17,7 @@ struct scene_loader {
     bool busy; // of the thread that starts and takes
     pthread_t thread;
     char *source;
+    char *environment;    // NULL for the scene's own
     atomic_bool finished; // what follows is the taker's to read
     struct scene *scene;
     struct error error;
@@ -40,6 +41,7 @@ void scene_loader_destroy(struct scene_loader **loader)
         pthread_join((*loader)->thread, NULL);
         scene_destroy(&(*loader)->scene);
         free((*loader)->source);
+        free((*loader)->environment);
     }
     free(*loader);
     *loader = NULL;
@@ -48,23 +50,27 @@ void scene_loader_destroy(struct scene_loader **loader)
 static void *load(void *user)
 {
     struct scene_loader *loader = user;
-    loader->scene = scene_load(loader->source, &loader->error);
+    loader->scene = scene_load_in_environment(loader->source, loader->environment, &loader->error);
     atomic_store(&loader->finished, true);
     loader->done(loader->user);
     return NULL;
 }
 
-bool scene_loader_start(struct scene_loader *loader, const char *source)
+bool scene_loader_start(struct scene_loader *loader, const char *source, const char *environment)
 {
     if (loader->busy)
         return false;
     loader->source = strdup(source);
+    loader->environment = environment ? strdup(environment) : NULL;
     loader->scene = NULL;
     loader->error.message[0] = '\0';
     atomic_store(&loader->finished, false);
-    loader->busy = loader->source && pthread_create(&loader->thread, NULL, load, loader) == 0;
-    if (!loader->busy)
+    loader->busy = loader->source && (loader->environment || !environment) &&
+                   pthread_create(&loader->thread, NULL, load, loader) == 0;
+    if (!loader->busy) {
         free(loader->source);
+        free(loader->environment);
+    }
     return loader->busy;
 }
 
@@ -80,6 +86,7 @@ bool scene_loader_take(struct scene_loader *loader, struct scene **out_scene,
         return false;
     pthread_join(loader->thread, NULL);
     free(loader->source);
+    free(loader->environment);
     loader->busy = false;
     *out_scene = loader->scene;
     *out_error = loader->error;
@@ -87,11 +94,13 @@ bool scene_loader_take(struct scene_loader *loader, struct scene **out_scene,
     return true;
 }
 
-static bool is_scene_name(const char *name)
+static const char *const scene_extensions[] = {".gltf", ".glb", ".obj", NULL};
+static const char *const environment_extensions[] = {".hdr", ".exr", NULL};
+
+static bool ends_with_one(const char *name, const char *const *extensions)
 {
-    static const char *const extensions[] = {".gltf", ".glb", ".obj"};
     size_t length = strlen(name);
-    for (size_t i = 0; i < sizeof(extensions) / sizeof(extensions[0]); i++) {
+    for (size_t i = 0; extensions[i]; i++) {
         size_t tail = strlen(extensions[i]);
         if (length > tail && strcasecmp(name + length - tail, extensions[i]) == 0)
             return true;
@@ -100,6 +109,7 @@ static bool is_scene_name(const char *name)
 }
 
 struct listing {
+    const char *const *extensions; // ended by NULL
     char **sources;
     uint32_t count, capacity;
 };
@@ -115,7 +125,7 @@ static void list_folder(struct listing *listing, const char *folder, const char 
             asprintf(&path, "%s/%s", folder, entries[i]->d_name) > 0 &&
             asprintf(&source, "%s%s", prefix, entries[i]->d_name) > 0 &&
             lstat(path, &status) == 0) {
-            if (S_ISREG(status.st_mode) && is_scene_name(source)) {
+            if (S_ISREG(status.st_mode) && ends_with_one(source, listing->extensions)) {
                 listing->sources[listing->count++] = source;
                 source = NULL;
             } else if (S_ISDIR(status.st_mode) && depth < MAX_LIST_DEPTH) {
@@ -132,12 +142,24 @@ static void list_folder(struct listing *listing, const char *folder, const char 
     free(entries);
 }
 
-uint32_t scene_loader_list(const char *folder, char **out_sources, uint32_t capacity)
+static uint32_t list_files(const char *folder, const char *const *extensions, char **out_sources,
+                           uint32_t capacity)
 {
-    struct listing listing = {.sources = out_sources, .capacity = capacity};
+    struct listing listing = {
+        .extensions = extensions, .sources = out_sources, .capacity = capacity};
     if (folder)
         list_folder(&listing, folder, "", 0);
     return listing.count;
+}
+
+uint32_t scene_loader_list(const char *folder, char **out_sources, uint32_t capacity)
+{
+    return list_files(folder, scene_extensions, out_sources, capacity);
+}
+
+uint32_t scene_loader_list_environments(const char *folder, char **out_names, uint32_t capacity)
+{
+    return list_files(folder, environment_extensions, out_names, capacity);
 }
 
 static bool is_builtin(const char *source)
@@ -151,12 +173,12 @@ static bool is_builtin(const char *source)
     return false;
 }
 
-char *scene_loader_resolve(const char *folder, const char *source, struct error *out_error)
+// `what` names the things in the message.
+static char *resolve(const char *folder, const char *const *extensions, const char *source,
+                     const char *what, struct error *out_error)
 {
-    if (is_builtin(source))
-        return strdup(source);
     char *joined = NULL, *path = NULL, *root = NULL;
-    if (folder && source[0] != '/' && is_scene_name(source) &&
+    if (folder && source[0] != '/' && ends_with_one(source, extensions) &&
         asprintf(&joined, "%s/%s", folder, source) > 0) {
         root = realpath(folder, NULL);
         path = realpath(joined, NULL);
@@ -167,9 +189,22 @@ char *scene_loader_resolve(const char *folder, const char *source, struct error 
     if (!below) {
         free(path);
         path = NULL;
-        error_set(out_error, "\"%.200s\" is not one of the scenes that scene.list names", source);
+        error_set(out_error, "\"%.200s\" is not one of the %s that scene.list names", source, what);
     }
     free(root);
     free(joined);
     return path;
+}
+
+char *scene_loader_resolve(const char *folder, const char *source, struct error *out_error)
+{
+    if (is_builtin(source))
+        return strdup(source);
+    return resolve(folder, scene_extensions, source, "scenes", out_error);
+}
+
+char *scene_loader_resolve_environment(const char *folder, const char *name,
+                                       struct error *out_error)
+{
+    return resolve(folder, environment_extensions, name, "environments", out_error);
 }

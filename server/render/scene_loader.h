@@ -12,9 +12,9 @@ struct scene_loader *scene_loader_create(void (*done)(void *user), void *user);
 // Waits for a load under way, and frees its result.
 void scene_loader_destroy(struct scene_loader **loader);
 
-// Starts to load; false if a load is under way or the thread cannot start. Runs on one thread,
-// which also takes the result.
-bool scene_loader_start(struct scene_loader *loader, const char *source);
+// Starts to load, in the environment of a file or, with NULL, the scene's own; false if a load is
+// under way or the thread cannot start. Runs on one thread, which also takes the result.
+bool scene_loader_start(struct scene_loader *loader, const char *source, const char *environment);
 
 bool scene_loader_is_busy(const struct scene_loader *loader); // until the result is taken
 
@@ -26,8 +26,15 @@ bool scene_loader_take(struct scene_loader *loader, struct scene **out_scene,
 // in order of name; NULL for none. Each is from malloc, the caller's. Returns their count.
 uint32_t scene_loader_list(const char *folder, char **out_sources, uint32_t capacity);
 
+// The same of environment images.
+uint32_t scene_loader_list_environments(const char *folder, char **out_names, uint32_t capacity);
+
 // The path of a source that a client may load ("builtin:NAME", or a file below `folder`), from
 // malloc, the caller's; NULL with a message.
 char *scene_loader_resolve(const char *folder, const char *source, struct error *out_error);
+
+// The path of an environment image below `folder`, likewise.
+char *scene_loader_resolve_environment(const char *folder, const char *name,
+                                       struct error *out_error);
 
 #endif
