@@ -179,12 +179,19 @@ export class App {
     this.viewTab.rebuild();
     // The camera of an earlier connection stays, if the scene is the same.
     const known = this.lastSource;
-    this.scene.loader.fillList().catch(() => {});
+    this.#fillLists().catch(() => {});
     if (!hello.ready) return;
     await this.#loadDocument();
     const isSame = known !== '' && known === this.document.data?.source;
     this.sender.adopt(isSame ? this.camera.pose : hello.camera);
     if (hello.role === 'viewer') this.toasts.show('info', 'You may look, but not edit.');
+  }
+
+  /** What the server has to show. */
+  async #fillLists() {
+    const { scenes, environments } = await this.connection.call('scene.list');
+    this.scene.loader.fillList(scenes);
+    this.light.environments.fillList(environments);
   }
 
   async #loadDocument() {

@@ -47,6 +47,14 @@ test('applies updates to things, to the environment and to what moves along', ()
   assert.deepEqual(scene.worldFromNode(7)[3], [1, 1, 0]);
 });
 
+test('a loaded environment has its image, until an undo takes it back', () => {
+  const { scene } = makeDocument();
+  scene.apply({ method: 'environment.load', name: 'noon.exr', set: { type: 'equirect' } }, fresh);
+  assert.deepEqual(scene.find('environment'), { intensity: 1, type: 'equirect', image: 'noon.exr', has_picture: true });
+  scene.apply({ method: 'environment.load', name: null, set: { type: 'none' } }, fresh);
+  assert.deepEqual(scene.find('environment'), { intensity: 1, type: 'none', image: null, has_picture: false });
+});
+
 test('a removed light takes its node along; undo brings both back', () => {
   const { scene, light, lightNode } = makeDocument();
   scene.apply({ method: 'light.add', id: 4, light, node: lightNode }, fresh);

@@ -1,6 +1,7 @@
 import { element } from '../ui/element.js';
 import { icon } from '../ui/icon.js';
 import { srgbFromLinear } from '../math/color.js';
+import { EnvironmentLoader } from './environment_loader.js';
 import { addParameterControls } from './parameter_controls.js';
 import { wordsOf } from './labels.js';
 import { isGiSetting } from './render_tab.js';
@@ -17,6 +18,7 @@ export class LightTab {
     this.actions = element('div', { class: 'actions' });
     this.chosen = element('div', {});
     this.shared = element('div', {});
+    this.environments = new EnvironmentLoader(app);
     root.append(element('h2', {}, 'Lights'), this.list, this.actions, this.chosen, this.shared);
     /** @type {{refresh: () => void}[]} */
     this.sharedControls = [];
@@ -41,13 +43,16 @@ export class LightTab {
     this.sharedControls = [
       ['environment', 'Environment'],
       ['settings', 'Picture'],
-    ].map(([group, title]) =>
-      addParameterControls(
-        makeSection(this.shared, title),
+    ].map(([group, title]) => {
+      const section = makeSection(this.shared, title);
+      if (group === 'environment') section.$children.append(this.environments.root);
+      return addParameterControls(
+        section,
         app.parameters(group).filter((parameter) => !isGiSetting(parameter)),
         app.target(group),
-      ),
-    );
+      );
+    });
+    this.environments.refresh();
     this.chooseLight();
   }
 
@@ -79,7 +84,10 @@ export class LightTab {
     if (group === 'light') {
       this.#drawList();
       if (id === this.app.selection.lightId) this.lightControls?.refresh();
-    } else for (const controls of this.sharedControls) controls.refresh();
+    } else {
+      for (const controls of this.sharedControls) controls.refresh();
+      this.environments.refresh();
+    }
   }
 
   #drawList() {

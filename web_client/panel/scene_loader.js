@@ -13,10 +13,9 @@ export class SceneLoader {
     this.select.addEventListener('change', () => this.#update());
   }
 
-  /** Asks the server what there is. */
-  async fillList() {
-    const { scenes } = await this.app.connection.call('scene.list');
-    const options = scenes.map((/** @type {{source: string, description: string}} */ scene) =>
+  /** @param {{source: string, description: string}[]} scenes of scene.list */
+  fillList(scenes) {
+    const options = scenes.map((scene) =>
       element('option', { value: scene.source, title: scene.description }, scene.source.replace(/^builtin:/, 'Built-in: ')),
     );
     this.select.replaceChildren(...options);

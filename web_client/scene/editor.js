@@ -68,6 +68,11 @@ export class Editor {
     return this.#request('light.remove', { id });
   }
 
+  /** @param {string} name of scene.list; how long it loads says nothing of edits @returns {Promise<any>} */
+  loadEnvironment(name) {
+    return this.#request('environment.load', { name }, null);
+  }
+
   undo() {
     return this.#request('edit.undo', {});
   }

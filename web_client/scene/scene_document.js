@@ -46,6 +46,7 @@ export class SceneDocument extends EventTarget {
     const [group, verb] = edit.method.split('.');
     if (verb === 'add') this.#add(edit);
     else if (verb === 'remove') this.#removeLight(edit.id);
+    else if (verb === 'load') this.#loadEnvironment(edit, isStale);
     else this.assign(group, edit.id, edit.set, isStale);
     for (const place of edit.lights ?? []) this.#move('light', place, isStale);
     for (const place of edit.nodes ?? []) this.#move('node', place, isStale);
@@ -82,6 +83,10 @@ export class SceneDocument extends EventTarget {
 
   #move(/** @type {string} */ group, /** @type {any} */ { id, ...set }, /** @type {any} */ isStale) {
     this.assign(group, id, set, isStale);
+  }
+
+  #loadEnvironment(/** @type {any} */ { name, set }, /** @type {any} */ isStale) {
+    this.assign('environment', undefined, { ...set, image: name, has_picture: name !== null }, isStale);
   }
 
   #add(/** @type {any} */ edit) {
