@@ -3,6 +3,7 @@
 // compares the bytes of frames.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_environment.test.mjs
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, rmSync, symlinkSync, truncateSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -197,5 +198,14 @@ test('--environment lights the first scene, a broken one ends the daemon', async
   await client.close();
   assert.equal(await stopDaemon(daemon), 0, daemon.log);
   await assert.rejects(startDaemon(['builtin:cornell', '--environment', join(folder, 'broken.exr')]), /fetch|ended/);
+  const render = (name) =>
+    spawnSync(process.env.VOXCAST ?? daemon.child.spawnargs[3].replace(/d$/, ''), [
+      'render', 'builtin:cornell', '--environment', join(folder, name), '--gi', 'none', '--frames', '1', '--size', '16x16',
+      '--out', join(folder, 'out.pfm'),
+    ]);
+  assert.equal(render('sky.exr').status, 0);
+  const refused = render('broken.exr');
+  assert.equal(refused.status, 3);
+  assert.match(String(refused.stderr), /broken\.exr.*OpenEXR/);
   rmSync(folder, { recursive: true });
 });
