@@ -129,7 +129,7 @@ float *radiance_decode(const uint8_t *bytes, size_t size, uint32_t *out_width, u
                        struct error *out_error)
 {
     struct reader reader = {bytes, bytes + size};
-    uint32_t width, height;
+    uint32_t width = 1, height = 1; // what refuses does not set them, which clang-tidy cannot see
     if (!take_header(&reader, &width, &height, out_error))
         return NULL;
     uint8_t *rgbe = malloc(4 * (size_t)width);
