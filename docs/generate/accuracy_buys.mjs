@@ -23,17 +23,17 @@ function factsOf({ method, settings }) {
 
 const keyOf = (facts) => JSON.stringify(Object.entries(facts).sort(([a], [b]) => (a < b ? -1 : 1)));
 
-const share = (after, before) => (before > 0 && after > 0 ? after / before - 1 : null);
+const fractionOf = (after, before) => (before > 0 && after > 0 ? after / before - 1 : null);
 
 /** How much more (1: twice, -0.5: half) each thing is after a step. */
 function changesOf(before, after) {
   const error = (rung, part) => errorOf('ldr_flip', rung.converged?.[part]?.ldr_flip);
   return {
-    error: share(error(after, 'metrics'), error(before, 'metrics')),
-    indirect: share(error(after, 'indirect'), error(before, 'indirect')),
-    frame: share(after.frame_ms.median, before.frame_ms.median),
-    settled: share(after.converged.ms, before.converged.ms),
-    memory: share(after.memory_bytes, before.memory_bytes),
+    error: fractionOf(error(after, 'metrics'), error(before, 'metrics')),
+    indirect: fractionOf(error(after, 'indirect'), error(before, 'indirect')),
+    frame: fractionOf(after.frame_ms.median, before.frame_ms.median),
+    settled: fractionOf(after.converged.ms, before.converged.ms),
+    memory: fractionOf(after.memory_bytes, before.memory_bytes),
   };
 }
 

@@ -3,9 +3,9 @@ import { heatMapColor } from '../../web_client/accuracy/heat_map.js';
 
 const WINDOWS = 3;
 const WINDOWS_ACROSS = 6; // a window is this part of the picture's width and height
-const MOST_STEP = 4; // pixels from a window to the next
+const MAX_STEP = 4; // pixels from a window to the next
 
-const stepOf = (size) => Math.max(1, Math.min(MOST_STEP, size >> 2));
+const stepOf = (size) => Math.max(1, Math.min(MAX_STEP, size >> 2));
 
 /** Errors of 0 to 1 by the colours that heat maps paint them with. @param {import('./png.mjs').Picture} map */
 export function errorsOf({ rgb, width, height }) {

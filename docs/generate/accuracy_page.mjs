@@ -5,7 +5,7 @@ import { writeFileSync } from 'node:fs';
 import { buysTable } from './accuracy_buys.mjs';
 import { worstWindows } from './accuracy_errors.mjs';
 import { sceneFigures } from './accuracy_figures.mjs';
-import { MOST_EXCESS, presetTable } from './accuracy_presets.mjs';
+import { MAX_EXCESS, presetTable } from './accuracy_presets.mjs';
 import { cropped, readPng, resized, tiled, writePng } from './png.mjs';
 import { chartSvg } from './svg.mjs';
 
@@ -159,7 +159,7 @@ than a tenth of the error shown.`;
 
 const PRESETS_INTRO = `How much more each preset errs than the best setting that is as fast and has settled as soon. A
 test reads these figures from [accuracy/figures.json](accuracy/figures.json) and allows up to
-${(100 * (MOST_EXCESS - 1)).toFixed(0)} % in the built-in scenes; what is beyond is bold.`;
+${(100 * (MAX_EXCESS - 1)).toFixed(0)} % in the built-in scenes; what is beyond is bold.`;
 
 /**
  * Writes accuracy.md and its pictures.

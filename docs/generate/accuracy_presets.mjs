@@ -6,7 +6,7 @@
 export const PRESETS = ['draft', 'interactive', 'high', 'final'];
 
 /** An error over the least of all that is as fast, up to which a preset counts as on the front. */
-export const MOST_EXCESS = 1.1;
+export const MAX_EXCESS = 1.1;
 
 /** As fast is what is as fast both while the camera moves and until its picture has settled. */
 const TIMES = ['frame_ms', 'settle_ms'];
@@ -45,7 +45,7 @@ export function judgePresets({ rungs }) {
     const own = rungOfPreset(rungs, preset);
     const front = frontAt(rungs, preset);
     const excess = !own || !front ? Infinity : front === own ? 1 : flipOf(own) / flipOf(front);
-    return { preset, own, front, excess, isNear: excess <= MOST_EXCESS };
+    return { preset, own, front, excess, isNear: excess <= MAX_EXCESS };
   });
 }
 
@@ -62,9 +62,9 @@ export function faultsOf(scene) {
     .map(({ preset, own, front, excess }) => {
       if (!own) return `${scene.name}: preset ${preset} was not measured`;
       if (!front) return `${scene.name}: preset ${preset} has no figures of error and time`;
-      const [more, most] = [excess - 1, MOST_EXCESS - 1].map((share) => `${(100 * share).toFixed(1)} %`);
+      const [more, allowed] = [excess - 1, MAX_EXCESS - 1].map((part) => `${(100 * part).toFixed(1)} %`);
       const [mine, other] = [own, front].map((rung) => judgedText(rung));
-      return `${scene.name}: preset ${preset} (${mine}) errs ${more} more than rung ${front.name} (${other}), which is at most as slow; up to ${most} is allowed`;
+      return `${scene.name}: preset ${preset} (${mine}) errs ${more} more than rung ${front.name} (${other}), which is at most as slow; up to ${allowed} is allowed`;
     });
 }
 

@@ -25,7 +25,7 @@ static void start_generation(struct voxel_volume *volume)
     light->generation = light->generation % 65535u + 1;
     light->start_pending = false;
     light->relight = true;
-    light->quiet_frames = 0;
+    light->unrequested_frames = 0;
     // Change and peak are sums over a generation.
     gpu_buffer_fill(volume->counters, COUNTER_CACHE_CHANGE * 4, 4, 0);
     gpu_buffer_fill(volume->counters, COUNTER_CACHE_PEAK * 4, 4, 0);
@@ -108,11 +108,11 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->relight = true;
         light->relight_direct = true;
         light->converged = false;
-        light->quiet_frames = 0;
+        light->unrequested_frames = 0;
     }
     if (more_asked || (!params->all_faces && params->camera_moved)) {
         light->converged = false;
-        light->quiet_frames = 0;
+        light->unrequested_frames = 0;
     }
     if (light->converged && !light->unlimited && light->bounce < light->needed) {
         light->converged = false; // a view has come that shows one bounce more of the cache
@@ -148,9 +148,10 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
         volume->faces_full)
         return;
     light->left = report->left;
-    light->quiet_frames = report->left == 0 && report->traced == 0 ? light->quiet_frames + 1 : 0;
-    bool complete =
-        light->all_faces_requested ? report->left == 0 : light->quiet_frames >= REQUEST_PATTERN;
+    light->unrequested_frames =
+        report->left == 0 && report->traced == 0 ? light->unrequested_frames + 1 : 0;
+    bool complete = light->all_faces_requested ? report->left == 0
+                                               : light->unrequested_frames >= REQUEST_PATTERN;
     if (!complete)
         return;
     if (light->filling) {

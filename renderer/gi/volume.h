@@ -49,20 +49,20 @@ struct voxel_light_state {
     bool settled_once;   // since the volume was made
     bool start_pending;  // the next frame begins a generation of the cache
     bool converged;
-    bool unlimited;           // bounces
-    bool all_faces_requested; // voxels need all faces, not only those that pixels see
-    bool feeds;               // voxels reflect what the cache holds
-    uint32_t generation;      // counts, 1 to 65535, then over again
-    uint32_t bounce;          // generations completed since light last changed
-    uint32_t needed;          // generations for the bounces asked for
-    uint32_t quiet_frames;    // in a row, in which nothing was left to trace
-    uint32_t left;            // faces that the newest report says are stale
-    uint32_t next_level;      // to relight, where one level is relit a frame
-    uint32_t version;         // counts changes of the radiance that cones see
-    float change;             // in the generation that ended last, relative to the brightest face
-    float rest;               // relative change that is still to come
-    float peak;               // brightest face then, over the scale
-    double entry_ms;          // measured cost of a face
+    bool unlimited;              // bounces
+    bool all_faces_requested;    // voxels need all faces, not only those that pixels see
+    bool feeds;                  // voxels reflect what the cache holds
+    uint32_t generation;         // counts, 1 to 65535, then over again
+    uint32_t bounce;             // generations completed since light last changed
+    uint32_t needed;             // generations for the bounces asked for
+    uint32_t unrequested_frames; // in a row, in which nothing was left to trace
+    uint32_t left;               // faces that the newest report says are stale
+    uint32_t next_level;         // to relight, where one level is relit a frame
+    uint32_t version;            // counts changes of the radiance that cones see
+    float change;    // in the generation that ended last, relative to the brightest face
+    float rest;      // relative change that is still to come
+    float peak;      // brightest face then, over the scale
+    double entry_ms; // measured cost of a face
 };
 
 struct voxel_volume {

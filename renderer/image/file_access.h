@@ -7,6 +7,8 @@
 
 #include "renderer/error.h"
 
+#define FILE_MAX_BYTES (1024ull << 20) // of what importers read
+
 // Identifies a file's content without reading it.
 struct asset_stamp {
     uint64_t size_bytes;

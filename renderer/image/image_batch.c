@@ -64,8 +64,8 @@ static void load_request(struct image_batch *batch, struct image_request *reques
     }
     uint8_t *bytes;
     size_t size;
-    if (asset_read_file(request->key.path, IMAGE_MAX_BYTES, &bytes, &size,
-                        &request->key.stamp, &request->error)) {
+    if (asset_read_file(request->key.path, IMAGE_MAX_BYTES, &bytes, &size, &request->key.stamp,
+                        &request->error)) {
         decode_request(batch, request, bytes, size);
         free(bytes);
     }

@@ -55,8 +55,7 @@ bool image_decode_size(const uint8_t *bytes, size_t size, uint32_t *out_width, u
                          "damaged or larger than %u pixels a side",
                          IMAGE_MAX_EDGE);
     }
-    if (width < 1 || height < 1 || width > (int)IMAGE_MAX_EDGE ||
-        height > (int)IMAGE_MAX_EDGE ||
+    if (width < 1 || height < 1 || width > (int)IMAGE_MAX_EDGE || height > (int)IMAGE_MAX_EDGE ||
         (uint64_t)width * (uint64_t)height * 4 > IMAGE_MAX_BYTES) {
         return error_set(out_error,
                          "a picture of %d x %d pixels; allowed are 1 to %u a side and %u MiB "

@@ -175,8 +175,8 @@ static void read_buffer_file(gltf_import &import, gltf_buffer &buffer, const std
     std::string path = resolve_uri(import, uri, what);
     uint8_t *bytes = nullptr;
     size_t size = 0;
-    if (!asset_read_file(path.c_str(), SCENE_MAX_FILE_BYTES - import.buffer_bytes, &bytes, &size,
-                         nullptr, &error)) {
+    if (!asset_read_file(path.c_str(), FILE_MAX_BYTES - import.buffer_bytes, &bytes, &size, nullptr,
+                         &error)) {
         import_fail("%s: %s", what, error.message);
     }
     std::unique_ptr<uint8_t, decltype(&free)> owned(bytes, free);
@@ -213,8 +213,8 @@ static void read_buffers(gltf_import &import, const byte_range &bin)
         }
         buffer.size = length; // what follows is padding
         import.buffer_bytes += length;
-        if (import.buffer_bytes > SCENE_MAX_FILE_BYTES) {
-            import_fail("the buffers exceed %llu bytes together", SCENE_MAX_FILE_BYTES);
+        if (import.buffer_bytes > FILE_MAX_BYTES) {
+            import_fail("the buffers exceed %llu bytes together", FILE_MAX_BYTES);
         }
     }
 }

@@ -158,8 +158,8 @@ struct scene *scene_import_gltf(const char *path, struct error *out_error)
     std::unique_ptr<char, decltype(&free)> folder(asset_path_folder(canonical.get()), free);
     uint8_t *bytes = nullptr;
     size_t size = 0;
-    if (!folder || !asset_read_file(canonical.get(), SCENE_MAX_FILE_BYTES, &bytes, &size,
-                                    &import.stamp, out_error)) {
+    if (!folder || !asset_read_file(canonical.get(), FILE_MAX_BYTES, &bytes, &size, &import.stamp,
+                                    out_error)) {
         return nullptr;
     }
     std::unique_ptr<uint8_t, decltype(&free)> owned_bytes(bytes, free);

@@ -460,8 +460,8 @@ struct scene *scene_import_obj(const char *path, struct error *out_error)
         return nullptr;
     }
     std::unique_ptr<char, decltype(&free)> folder(asset_path_folder(canonical.get()), free);
-    if (!folder || !asset_read_file(canonical.get(), SCENE_MAX_FILE_BYTES, &bytes, &size, nullptr,
-                                    out_error)) {
+    if (!folder ||
+        !asset_read_file(canonical.get(), FILE_MAX_BYTES, &bytes, &size, nullptr, out_error)) {
         return nullptr;
     }
     std::unique_ptr<uint8_t, decltype(&free)> owned(bytes, free);

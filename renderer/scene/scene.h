@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 #include "renderer/parameter_types.h"
-#include "renderer/scene/environment_image.h"
+#include "renderer/image/environment_image.h"
 #include "renderer/image/image.h"
 
 #define SCENE_NONE UINT32_MAX
@@ -19,18 +19,17 @@
 #define SCENE_MAX_COORDINATE_M 1e15f
 
 // Limits. A file beyond them is refused with a message that names the limit.
-#define SCENE_MAX_VERTICES         (64u << 20)
-#define SCENE_MAX_INDICES          (192u << 20)
-#define SCENE_MAX_NODES            200000u
-#define SCENE_MAX_MESHES           100000u
-#define SCENE_MAX_PRIMITIVES       200000u
-#define SCENE_MAX_MATERIALS        16384u
-#define SCENE_MAX_IMAGES           4096u
-#define SCENE_MAX_LIGHTS           8192u
-#define SCENE_MAX_CAMERAS          1024u
-#define SCENE_MAX_ANIMATIONS       1024u
-#define SCENE_MAX_FILE_BYTES       (1024ull << 20)
-#define SCENE_MAX_WARNINGS         64u
+#define SCENE_MAX_VERTICES   (64u << 20)
+#define SCENE_MAX_INDICES    (192u << 20)
+#define SCENE_MAX_NODES      200000u
+#define SCENE_MAX_MESHES     100000u
+#define SCENE_MAX_PRIMITIVES 200000u
+#define SCENE_MAX_MATERIALS  16384u
+#define SCENE_MAX_IMAGES     4096u
+#define SCENE_MAX_LIGHTS     8192u
+#define SCENE_MAX_CAMERAS    1024u
+#define SCENE_MAX_ANIMATIONS 1024u
+#define SCENE_MAX_WARNINGS   64u
 
 // So many removed lights keep their places, so that they can come back under their ids.
 #define SCENE_KEPT_LIGHTS 256u

@@ -12,7 +12,7 @@
 
 #include "renderer/log.h"
 
-#define QUIET_MS 200
+#define SETTLE_MS 200
 
 struct watched_file {
     int folder; // watch descriptor
@@ -64,7 +64,7 @@ static void *run(void *user)
     bool pending = false;
     for (;;) {
         struct pollfd fds[2] = {{watch->stop_fd, POLLIN, 0}, {watch->inotify_fd, POLLIN, 0}};
-        int count = poll(fds, 2, pending ? QUIET_MS : -1);
+        int count = poll(fds, 2, pending ? SETTLE_MS : -1);
         if (count < 0 && errno == EINTR)
             continue;
         if (count < 0 || fds[0].revents)

@@ -10,7 +10,7 @@
 #include "server/document/document.h"
 #include "server/document/edit.h"
 #include "server/document/edit_log.h"
-#include "server/environment_loader.h"
+#include "server/render/environment_loader.h"
 #include "server/render/file_watch.h"
 #include "server/render/quality_controller.h"
 #include "server/render/render_thread.h"

@@ -19,7 +19,7 @@ int cli_bench(int argc, char **argv);
 int cli_shaders(int argc, char **argv);
 int cli_compare(int argc, char **argv);
 int cli_accuracy(int argc, char **argv);
-int cli_stability(int argc, char **argv); // in tests/stability/, with its cases
+int cli_stability(int argc, char **argv); // in server/tool/stability/, with its cases
 
 // Prints one line to stderr and returns `status`.
 int cli_fail(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "renderer/scene/environment_image.h"
+#include "renderer/image/environment_image.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -15,7 +15,7 @@
 #include "renderer/import/builtin/mesh_builder.h"
 #include "renderer/import/scene_load.h"
 #include "support_gi.h"
-#include "server/tool/stability/exr_file.h"
+#include "tests/support/exr_file.h"
 
 #define WIDTH        512
 #define HEIGHT       256

@@ -10,5 +10,4 @@ export const CALLED_BY_TESTS = {
   sampler_get_2d: 'one path at a time: what sampler_batch.c must equal for many',
   asset_cache_set_budget: 'fills the cache by few small pictures',
   asset_cache_get_statistics: 'shows hits, which a result does not tell from misses',
-  scene_load_environment: 'equirectangular skies; no command and no option reaches it yet',
 };

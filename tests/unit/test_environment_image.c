@@ -14,8 +14,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "renderer/scene/environment_image.h"
-#include "server/tool/stability/exr_file.h"
+#include "renderer/image/environment_image.h"
+#include "tests/support/exr_file.h"
 
 #define WIDTH  13
 #define HEIGHT 7

@@ -76,7 +76,7 @@ describe('a daemon with a folder of environments', () => {
     client = await greet(daemon, { name: 'Ada' }, '?token=editor');
     other = await greet(daemon, { name: 'Bob' }, '?token=editor');
     viewer = await greet(daemon, {}, '?token=viewer');
-    for (const quiet of [other, viewer]) await quiet.call('view.configure', { paused: true });
+    for (const silent of [other, viewer]) await silent.call('view.configure', { paused: true });
     await client.call('view.configure', { width: 96, height: 64, quality: 'interactive', adaptive: false });
     // Light in voxels settles to within a bound, not to the bit: what it was before is left of it.
     const { result } = await client.call('settings.update', { set: { gi_method: 'none', exposure_mode: 'fixed' } });
@@ -200,7 +200,8 @@ test('--environment lights the first scene, a broken one ends the daemon', async
   await assert.rejects(startDaemon(['builtin:cornell', '--environment', join(folder, 'broken.exr')]), /fetch|ended/);
   const render = (name) =>
     spawnSync(process.env.VOXCAST ?? daemon.child.spawnargs[3].replace(/d$/, ''), [
-      'render', 'builtin:cornell', '--environment', join(folder, name), '--gi', 'none', '--frames', '1', '--size', '16x16',
+      ...['render', 'builtin:cornell', '--environment', join(folder, name), '--gi', 'none'],
+      ...['--frames', '1', '--size', '16x16'],
       '--out', join(folder, 'out.pfm'),
     ]);
   assert.equal(render('sky.exr').status, 0);

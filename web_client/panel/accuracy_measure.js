@@ -46,7 +46,7 @@ export class AccuracyMeasure {
   }
 
   #showBar(/** @type {any} */ progress) {
-    const value = shareDone(progress);
+    const value = fractionDone(progress);
     if (value === null) this.bar.removeAttribute('value');
     else this.bar.value = value;
   }
@@ -70,7 +70,7 @@ export class AccuracyMeasure {
 }
 
 /** Of the present step; null if that is not known. Noise falls by the root of the samples. */
-function shareDone(/** @type {any} */ progress) {
+function fractionDone(/** @type {any} */ progress) {
   if (progress?.state === 'rungs') return progress.rung_count ? progress.done / progress.rung_count : null;
   if (progress?.state !== 'reference' || !(progress.noise > 0)) return null;
   return Math.min((progress.noise_wanted / progress.noise) ** 2, 1);

@@ -34,7 +34,7 @@ import { VectorController } from './vector_controller.js';
 const whyRests = ({ needs = [] }, target) =>
   needs.find((need) => !need.in.includes(target.get(need.name)))?.reason ?? '';
 
-const MOST_SLIDER_STEPS = 1001;
+const MAX_SLIDER_STEPS = 1001;
 const DEGREES = 180 / Math.PI;
 
 const rounded = (/** @type {number} */ value) => Number(value.toPrecision(5));
@@ -123,7 +123,7 @@ function makeController(/** @type {any} */ gui, /** @type {Parameter} */ paramet
   const controller = gui.add(object, name).name(label);
   if (type !== 'float' && type !== 'int') return controller;
   // A slider over millions of steps is useless: such numbers are typed, stepped or dragged.
-  if ((parameter.max ?? 0) - (parameter.min ?? 0) > MOST_SLIDER_STEPS * (parameter.step ?? 1))
+  if ((parameter.max ?? 0) - (parameter.min ?? 0) > MAX_SLIDER_STEPS * (parameter.step ?? 1))
     controller.min(min);
   else controller.min(rounded(min)).max(rounded(max));
   return controller.step(unit === 'rad' ? 1 : step, false);

@@ -1,7 +1,7 @@
 import { element } from './element.js';
 
 const SHOWN_MS = 7000;
-const MOST = 4;
+const MAX_TOASTS = 4;
 
 /** Short messages that go by themselves. Screen readers hear them. */
 export class Toasts {
@@ -21,7 +21,7 @@ export class Toasts {
     );
     close.addEventListener('click', () => toast.remove());
     this.container.append(toast);
-    while (this.container.children.length > MOST) this.container.firstElementChild?.remove();
+    while (this.container.children.length > MAX_TOASTS) this.container.firstElementChild?.remove();
     setTimeout(() => toast.remove(), SHOWN_MS);
   }
 

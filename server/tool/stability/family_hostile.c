@@ -10,7 +10,7 @@
 #include "protocol/command.h"
 #include "renderer/clock.h"
 #include "renderer/image/file_access.h"
-#include "renderer/scene/environment_image.h"
+#include "renderer/image/environment_image.h"
 #include "renderer/import/import_memory.h"
 #include "server/tool/stability/hostile.h"
 #include "server/tool/stability/mutation.h"

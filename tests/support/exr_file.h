@@ -1,7 +1,7 @@
 // Writes small OpenEXR files byte by byte, good ones and such as none should be: without the
 // library that reads them, and uncompressed.
-#ifndef VOXCAST_SERVER_TOOL_STABILITY_EXR_FILE_H
-#define VOXCAST_SERVER_TOOL_STABILITY_EXR_FILE_H
+#ifndef VOXCAST_TESTS_SUPPORT_EXR_FILE_H
+#define VOXCAST_TESTS_SUPPORT_EXR_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>

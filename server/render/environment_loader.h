@@ -1,6 +1,6 @@
 // Loads one environment image at a time on a thread of its own.
-#ifndef VOXCAST_SERVER_ENVIRONMENT_LOADER_H
-#define VOXCAST_SERVER_ENVIRONMENT_LOADER_H
+#ifndef VOXCAST_SERVER_RENDER_ENVIRONMENT_LOADER_H
+#define VOXCAST_SERVER_RENDER_ENVIRONMENT_LOADER_H
 
 #include "renderer/renderer.h"
 

@@ -1,7 +1,7 @@
 // Decodes OpenEXR images from memory: one part of scanlines or tiles with channels R, G, B or Y, as
 // half or float.
-#ifndef VOXCAST_RENDERER_SCENE_EXR_DECODE_H
-#define VOXCAST_RENDERER_SCENE_EXR_DECODE_H
+#ifndef VOXCAST_RENDERER_IMAGE_EXR_DECODE_H
+#define VOXCAST_RENDERER_IMAGE_EXR_DECODE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "renderer/scene/environment_image.h"
+#include "renderer/image/environment_image.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "renderer/image/file_access.h"
-#include "renderer/scene/exr_decode.h"
-#include "renderer/scene/radiance_decode.h"
-#include "renderer/scene/scene.h"
+#include "renderer/image/exr_decode.h"
+#include "renderer/image/radiance_decode.h"
+#include "renderer/image/image.h"
 
 static atomic_uint_fast64_t newest_serial;
 
@@ -20,7 +20,7 @@ static double edge_y(uint32_t row, uint32_t height)
 }
 
 // One axis: what share of a source cell, 0..1, lies in the target cell after the one it begins in.
-static double share_beyond(double begin, double end, double target_end)
+static double fraction_beyond(double begin, double end, double target_end)
 {
     return end > target_end ? (end - target_end) / (end - begin) : 0.0;
 }
@@ -33,7 +33,7 @@ static void sum_columns(const float *from, uint32_t from_width, double *to, uint
         uint32_t column = (uint32_t)((uint64_t)x * to_width / from_width);
         double scale = (double)to_width / from_width;
         double beyond =
-            column + 1 < to_width ? share_beyond(x * scale, (x + 1) * scale, column + 1.0) : 0.0;
+            column + 1 < to_width ? fraction_beyond(x * scale, (x + 1) * scale, column + 1.0) : 0.0;
         for (uint32_t c = 0; c < 3; c++) {
             to[3 * column + c] += (1.0 - beyond) * (double)from[3 * x + c] * scale;
             if (beyond > 0.0)
@@ -60,7 +60,7 @@ static bool reduce(const struct environment_level *from, struct environment_leve
         uint32_t target = (uint32_t)((uint64_t)y * to->height / from->height);
         double top = edge_y(y, from->height), bottom = edge_y(y + 1, from->height);
         double beyond = target + 1 < to->height
-                            ? share_beyond(-top, -bottom, -edge_y(target + 1, to->height))
+                            ? fraction_beyond(-top, -bottom, -edge_y(target + 1, to->height))
                             : 0.0;
         double *at = sums + (size_t)3 * target * to->width;
         add_row(at, row, to->width, (1.0 - beyond) * (top - bottom));
@@ -77,7 +77,7 @@ static bool reduce(const struct environment_level *from, struct environment_leve
     return done;
 }
 
-static uint32_t at_most(uint32_t value, uint32_t limit)
+static uint32_t max_side(uint32_t value, uint32_t limit)
 {
     return value < limit ? value : limit;
 }
@@ -90,8 +90,8 @@ static uint32_t half_of(uint32_t value)
 static bool make_levels(struct environment_image *image)
 {
     struct environment_level from = {image->width, image->height, image->pixels};
-    struct environment_level next = {.width = at_most(from.width, ENVIRONMENT_LEVEL_WIDTH),
-                                     .height = at_most(from.height, ENVIRONMENT_LEVEL_HEIGHT)};
+    struct environment_level next = {.width = max_side(from.width, ENVIRONMENT_LEVEL_WIDTH),
+                                     .height = max_side(from.height, ENVIRONMENT_LEVEL_HEIGHT)};
     bool done = true;
     while (done && image->level_count < ENVIRONMENT_MAX_LEVELS) {
         struct environment_level *level = &image->levels[image->level_count++];
@@ -189,7 +189,7 @@ struct environment_image *environment_image_load(const char *path, struct error 
 {
     uint8_t *bytes = NULL;
     size_t size;
-    if (!asset_read_file(path, SCENE_MAX_FILE_BYTES, &bytes, &size, NULL, out_error))
+    if (!asset_read_file(path, FILE_MAX_BYTES, &bytes, &size, NULL, out_error))
         return NULL;
     struct error cause;
     struct environment_image *image = environment_image_decode(bytes, size, &cause);
@@ -212,7 +212,7 @@ static void sample_level(const struct environment_level *level, float u, float v
     float y = v * (float)level->height - 0.5f;
     y = fminf(fmaxf(y, 0.0f), (float)(level->height - 1));
     uint32_t left = (uint32_t)x % level->width, right = (left + 1) % level->width;
-    uint32_t top = (uint32_t)y, bottom = at_most(top + 1, level->height - 1);
+    uint32_t top = (uint32_t)y, bottom = max_side(top + 1, level->height - 1);
     float across = x - floorf(x), down = y - floorf(y);
     const float *upper = level->pixels + (size_t)3 * top * level->width;
     const float *lower = level->pixels + (size_t)3 * bottom * level->width;

@@ -1,4 +1,4 @@
-#include "server/environment_loader.h"
+#include "server/render/environment_loader.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

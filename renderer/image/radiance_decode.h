@@ -1,6 +1,6 @@
 // Decodes Radiance (.hdr) images from memory: flat texels and both kinds of run lengths.
-#ifndef VOXCAST_RENDERER_SCENE_RADIANCE_DECODE_H
-#define VOXCAST_RENDERER_SCENE_RADIANCE_DECODE_H
+#ifndef VOXCAST_RENDERER_IMAGE_RADIANCE_DECODE_H
+#define VOXCAST_RENDERER_IMAGE_RADIANCE_DECODE_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "server/tool/stability/exr_file.h"
+#include "tests/support/exr_file.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,14 +1,14 @@
 // The library finds and decompresses chunks; what it is to find is checked before, and its bytes
 // are turned into floats here, within bounds that this file knows.
-#include "renderer/scene/exr_decode.h"
+#include "renderer/image/exr_decode.h"
 
 #include <openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/scene/environment_image.h"
-#include "renderer/scene/scene.h"
+#include "renderer/image/environment_image.h"
+#include "renderer/image/image.h"
 
 // A chunk is at most 256 lines of the widest image, or a tile, of all channels.
 #define MAX_CHUNK_BYTES (ENVIRONMENT_MAX_BYTES)
@@ -121,12 +121,12 @@ static bool check_windows(struct exr_image *image, struct error *out_error)
         return error_set(out_error, "an OpenEXR file without data window or display window");
     int64_t width = (int64_t)data.max.x - data.min.x + 1;
     int64_t height = (int64_t)data.max.y - data.min.y + 1;
-    if (width < 1 || height < 1 || width > SCENE_MAX_IMAGE_EDGE || height > SCENE_MAX_IMAGE_EDGE ||
+    if (width < 1 || height < 1 || width > IMAGE_MAX_EDGE || height > IMAGE_MAX_EDGE ||
         width * height * (int64_t)sizeof(float[3]) > ENVIRONMENT_MAX_BYTES)
         return error_set(out_error,
                          "an image of %lld x %lld texels; allowed are 1 to %u a side and %u MiB of "
                          "floats",
-                         (long long)width, (long long)height, SCENE_MAX_IMAGE_EDGE,
+                         (long long)width, (long long)height, IMAGE_MAX_EDGE,
                          ENVIRONMENT_MAX_BYTES >> 20);
     if (memcmp(&data, &display, sizeof(data)) != 0)
         return error_set(
@@ -257,29 +257,29 @@ static void take_line(const struct exr_image *image, const uint8_t *at, float *t
 static bool take_chunk(struct exr_image *image, exr_decode_pipeline_t *pipeline, uint32_t x,
                        uint32_t y, struct error *out_error)
 {
-    const exr_chunk_info_t *batch = &pipeline->batch;
+    const exr_chunk_info_t *chunk = &pipeline->chunk;
     const uint8_t *bytes = pipeline->unpacked_buffer;
-    if (batch->width < 1 || batch->height < 1 || (uint32_t)batch->width > image->width - x ||
-        (uint32_t)batch->height > image->height - y)
+    if (chunk->width < 1 || chunk->height < 1 || (uint32_t)chunk->width > image->width - x ||
+        (uint32_t)chunk->height > image->height - y)
         return error_set(out_error, "a chunk of %d x %d texels at (%u, %u) leaves the image",
-                         batch->width, batch->height, x, y);
-    size_t line = image->bytes_per_texel * (size_t)batch->width;
-    if (!bytes || batch->unpacked_size != line * (size_t)batch->height)
+                         chunk->width, chunk->height, x, y);
+    size_t line = image->bytes_per_texel * (size_t)chunk->width;
+    if (!bytes || chunk->unpacked_size != line * (size_t)chunk->height)
         return error_set(out_error, "the chunk at (%u, %u) has another size than its texels", x, y);
-    for (uint32_t row = 0; row < (uint32_t)batch->height; row++)
+    for (uint32_t row = 0; row < (uint32_t)chunk->height; row++)
         take_line(image, bytes + row * line,
                   image->pixels + 3 * ((size_t)(y + row) * image->width + x),
-                  (uint32_t)batch->width);
+                  (uint32_t)chunk->width);
     return true;
 }
 
 // Chunk after chunk with one pipeline, whose buffers serve all.
 static exr_result_t run_pipeline(const struct exr_image *image, exr_decode_pipeline_t *pipeline,
-                                 const exr_chunk_info_t *batch)
+                                 const exr_chunk_info_t *chunk)
 {
     exr_result_t result = pipeline->channels
-                              ? exr_decoding_update(image->context, 0, batch, pipeline)
-                              : exr_decoding_initialize(image->context, 0, batch, pipeline);
+                              ? exr_decoding_update(image->context, 0, chunk, pipeline)
+                              : exr_decoding_initialize(image->context, 0, chunk, pipeline);
     // Routines read and decompress; what would unpack knows no bounds of ours.
     if (result == EXR_ERR_SUCCESS && !pipeline->read_fn)
         result = exr_decoding_choose_default_routines(image->context, 0, pipeline);
@@ -289,14 +289,14 @@ static exr_result_t run_pipeline(const struct exr_image *image, exr_decode_pipel
 
 static bool read_chunk(struct exr_image *image, const struct exr_file *file,
                        exr_decode_pipeline_t *pipeline, uint32_t x, uint32_t y,
-                       const exr_chunk_info_t *batch, struct error *out_error)
+                       const exr_chunk_info_t *chunk, struct error *out_error)
 {
     char what[80];
     snprintf(what, sizeof(what), "the chunk at (%u, %u) is damaged", x, y);
-    if (batch->unpacked_size > MAX_CHUNK_BYTES || batch->packed_size > file->size)
+    if (chunk->unpacked_size > MAX_CHUNK_BYTES || chunk->packed_size > file->size)
         return error_set(out_error, "%s: it has %llu bytes; allowed are %u", what,
-                         (unsigned long long)batch->unpacked_size, MAX_CHUNK_BYTES);
-    exr_result_t result = run_pipeline(image, pipeline, batch);
+                         (unsigned long long)chunk->unpacked_size, MAX_CHUNK_BYTES);
+    exr_result_t result = run_pipeline(image, pipeline, chunk);
     if (result != EXR_ERR_SUCCESS)
         return fail(file, result, what, out_error);
     return take_chunk(image, pipeline, x, y, out_error);
@@ -309,15 +309,15 @@ static bool read_scanlines(struct exr_image *image, const struct exr_file *file,
     if (exr_get_scanlines_per_chunk(image->context, 0, &lines) != EXR_ERR_SUCCESS || lines < 1)
         return error_set(out_error, "an OpenEXR file without scanlines");
     for (uint32_t y = 0; y < image->height; y += (uint32_t)lines) {
-        exr_chunk_info_t batch = {0};
+        exr_chunk_info_t chunk = {0};
         exr_result_t result =
-            exr_read_scanline_chunk_info(image->context, 0, image->top + (int32_t)y, &batch);
+            exr_read_scanline_chunk_info(image->context, 0, image->top + (int32_t)y, &chunk);
         if (result != EXR_ERR_SUCCESS) {
             char what[80];
             snprintf(what, sizeof(what), "the file is truncated or damaged at line %u", y);
             return fail(file, result, what, out_error);
         }
-        if (!read_chunk(image, file, pipeline, 0, y, &batch, out_error))
+        if (!read_chunk(image, file, pipeline, 0, y, &chunk, out_error))
             return false;
     }
     return true;
@@ -332,16 +332,16 @@ static bool read_tiles(struct exr_image *image, const struct exr_file *file,
     exr_get_tile_descriptor(image->context, 0, &width, &height, &levels, &round);
     for (uint32_t y = 0; y < image->height; y += height)
         for (uint32_t x = 0; x < image->width; x += width) {
-            exr_chunk_info_t batch = {0};
+            exr_chunk_info_t chunk = {0};
             exr_result_t result = exr_read_tile_chunk_info(image->context, 0, (int)(x / width),
-                                                           (int)(y / height), 0, 0, &batch);
+                                                           (int)(y / height), 0, 0, &chunk);
             if (result != EXR_ERR_SUCCESS) {
                 char what[80];
                 snprintf(what, sizeof(what), "the file is truncated or damaged at tile (%u, %u)",
                          x / width, y / height);
                 return fail(file, result, what, out_error);
             }
-            if (!read_chunk(image, file, pipeline, x, y, &batch, out_error))
+            if (!read_chunk(image, file, pipeline, x, y, &chunk, out_error))
                 return false;
         }
     return true;

@@ -1,5 +1,5 @@
 // As Ward describes the format in "Real Pixels" (Graphics Gems II) and Radiance's manual pages do.
-#include "renderer/scene/radiance_decode.h"
+#include "renderer/image/radiance_decode.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/scene/environment_image.h"
-#include "renderer/scene/scene.h"
+#include "renderer/image/environment_image.h"
+#include "renderer/image/image.h"
 
 #define MAX_LINE_BYTES 512
 // Narrower and wider lines are never in runs of a component each.
@@ -47,12 +47,12 @@ static bool take_header(struct reader *reader, uint32_t *out_width, uint32_t *ou
         return error_set(out_error, "a Radiance image of another format than 32-bit_rle_rgbe");
     if (!take_line(reader, line) || sscanf(line, "-Y %9u +X %9u", &height, &width) != 2)
         return error_set(out_error, "a Radiance image whose size is not \"-Y height +X width\"");
-    if (width < 1 || height < 1 || width > SCENE_MAX_IMAGE_EDGE || height > SCENE_MAX_IMAGE_EDGE ||
+    if (width < 1 || height < 1 || width > IMAGE_MAX_EDGE || height > IMAGE_MAX_EDGE ||
         (uint64_t)width * height * sizeof(float[3]) > ENVIRONMENT_MAX_BYTES)
         return error_set(out_error,
                          "an image of %u x %u texels; allowed are 1 to %u a side and %u MiB of "
                          "floats",
-                         width, height, SCENE_MAX_IMAGE_EDGE, ENVIRONMENT_MAX_BYTES >> 20);
+                         width, height, IMAGE_MAX_EDGE, ENVIRONMENT_MAX_BYTES >> 20);
     *out_width = width;
     *out_height = height;
     return true;

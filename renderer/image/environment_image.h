@@ -1,7 +1,7 @@
 // The equirectangular image of an environment, shared by reference count between scenes, their
 // copies and the steps of undo. It never changes once made.
-#ifndef VOXCAST_RENDERER_SCENE_ENVIRONMENT_IMAGE_H
-#define VOXCAST_RENDERER_SCENE_ENVIRONMENT_IMAGE_H
+#ifndef VOXCAST_RENDERER_IMAGE_ENVIRONMENT_IMAGE_H
+#define VOXCAST_RENDERER_IMAGE_ENVIRONMENT_IMAGE_H
 
 #include <stddef.h>
 #include <stdint.h>
