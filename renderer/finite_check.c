@@ -15,8 +15,13 @@
 #define EVERY_WORD  0xffffffffu
 #define NOT_WRITTEN RESOURCE_COUNT // by any pass: part of the scene
 
-// As shaders/debug/finite_check.comp has them.
-enum texture_kind { TEXTURE_NONE, TEXTURE_PLAIN, TEXTURE_ARRAY, TEXTURE_VOLUME };
+// TEXTURE of the shader.
+enum texture_kind {
+    TEXTURE_NONE = CHECK_BUFFER,
+    TEXTURE_PLAIN = CHECK_TEXTURE_2D,
+    TEXTURE_ARRAY = CHECK_TEXTURE_ARRAY,
+    TEXTURE_VOLUME = CHECK_TEXTURE_3D,
+};
 
 struct checked {
     const char *name;

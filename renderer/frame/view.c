@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "renderer/frame/frame.h"
+#include "shared/display.h"
 
 struct view *view_create(struct gpu *gpu)
 {

@@ -244,6 +244,22 @@ uint32_t gpu_programs_reload_changed(struct gpu *gpu, struct error *out_error)
     return rebuilt;
 }
 
+bool gpu_program_find_member(const struct gpu_program *program, const char *name,
+                             uint32_t *out_offset)
+{
+    static const GLenum interfaces[] = {GL_UNIFORM, GL_BUFFER_VARIABLE}, property = GL_OFFSET;
+    for (size_t i = 0; i < sizeof(interfaces) / sizeof(interfaces[0]); i++) {
+        GLuint index = glGetProgramResourceIndex(program->name, interfaces[i], name);
+        GLint offset = -1;
+        if (index == GL_INVALID_INDEX)
+            continue;
+        glGetProgramResourceiv(program->name, interfaces[i], index, 1, &property, 1, NULL, &offset);
+        *out_offset = (uint32_t)offset;
+        return offset >= 0;
+    }
+    return false;
+}
+
 uint32_t gpu_program_name(const struct gpu_program *program)
 {
     return program->name;

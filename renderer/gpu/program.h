@@ -17,6 +17,11 @@ uint32_t gpu_programs_reload_changed(struct gpu *gpu, struct error *out_error);
 // Starts watching the shader folder.
 void gpu_programs_watch(struct gpu *gpu);
 
+// The offset in bytes of a member of a uniform or storage block, such as "frame.near_m" or
+// "lights[0].type", as the driver lays it out. False if the program has none of this name.
+bool gpu_program_find_member(const struct gpu_program *program, const char *name,
+                             uint32_t *out_offset);
+
 uint32_t gpu_program_name(const struct gpu_program *program);
 void gpu_programs_destroy(struct gpu *gpu);
 

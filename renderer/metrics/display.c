@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "shared/work_groups.h"
+#include "shared/display.h"
 
 // As shaders/post/exposure.comp.
 #define LOWEST_STOP     -24.0f

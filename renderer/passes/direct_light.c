@@ -4,6 +4,7 @@
 #include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
+#include "shared/display.h"
 
 static const char *direct_light_skip_reason(const struct frame *frame)
 {
@@ -18,10 +19,12 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
 {
     // The first pass to write radiance starts from the emission.
     bool first = environment_pass.skip_reason(frame) != NULL;
+    int added_to = frame->params->debug_view == DEBUG_VIEW_DIRECT ? ADDED_TO_NOTHING
+                   : first                                        ? ADDED_TO_EMISSION
+                                                                  : ADDED_TO_RADIANCE;
     char extra[FRAME_VISIBILITY_DEFINES_LENGTH + 16], visibility[FRAME_VISIBILITY_DEFINES_LENGTH];
     frame_write_visibility_defines(frame, visibility);
-    snprintf(extra, sizeof(extra), "FIRST %d\n%s",
-             frame->params->debug_view == DEBUG_VIEW_DIRECT ? 2 : first, visibility);
+    snprintf(extra, sizeof(extra), "ADDED_TO %d\n%s", added_to, visibility);
     const struct gpu_program *program =
         frame->volume ? voxel_program(frame, pass, "light/direct_light.comp", extra, out_error)
                       : pass_program(frame, pass, "light/direct_light.comp", extra, out_error);

@@ -14,9 +14,10 @@ static const char *exposure_skip_reason(const struct frame *frame)
 static bool exposure_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
     const struct gpu_program *count =
-        pass_program(frame, pass, "post/exposure.comp", "STAGE 0\n", out_error);
+        pass_program(frame, pass, "post/exposure.comp", "STAGE EXPOSURE_HISTOGRAM\n", out_error);
     const struct gpu_program *reduce =
-        count ? pass_program(frame, pass, "post/exposure.comp", "STAGE 1\n", out_error) : NULL;
+        count ? pass_program(frame, pass, "post/exposure.comp", "STAGE EXPOSURE_MEAN\n", out_error)
+              : NULL;
     if (!reduce)
         return false;
     uint32_t step = 2 * GROUP_EDGE;

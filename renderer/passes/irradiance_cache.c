@@ -22,10 +22,13 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
     struct voxel_volume *volume = frame->volume;
     const struct gpu_program *request =
         voxel_program(frame, pass, "gi/cache_request.comp", "", out_error);
-    const struct gpu_program *select =
-        request ? voxel_program(frame, pass, "gi/cache_select.comp", "STAGE 0\n", out_error) : NULL;
-    const struct gpu_program *arguments =
-        select ? voxel_program(frame, pass, "gi/cache_select.comp", "STAGE 1\n", out_error) : NULL;
+    const struct gpu_program *select = request ? voxel_program(frame, pass, "gi/cache_select.comp",
+                                                               "STAGE SELECT_FACES\n", out_error)
+                                               : NULL;
+    const struct gpu_program *arguments = select
+                                              ? voxel_program(frame, pass, "gi/cache_select.comp",
+                                                              "STAGE SELECT_ARGUMENTS\n", out_error)
+                                              : NULL;
     const struct gpu_program *gather = arguments
                                            ? voxel_program(frame, pass, "gi/cache_trace.comp",
                                                            "PIXEL_CONES 0\nMARCH 0\n", out_error)

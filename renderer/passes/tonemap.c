@@ -3,6 +3,11 @@
 
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
+#include "shared/display.h"
+
+_Static_assert((int)FRAME_OUTPUT_YCBCR == OUTPUT_YCBCR && (int)FRAME_OUTPUT_RGBA8 == OUTPUT_RGBA8 &&
+                   (int)FRAME_OUTPUT_LINEAR == OUTPUT_LINEAR,
+               "shaders know the outputs by these numbers");
 
 static bool tonemap_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {

@@ -46,10 +46,10 @@ static bool get_programs(const struct frame *frame, const struct pass *pass,
         {&programs->small, "voxel/voxelize.comp", "LARGE 0\n"},
         {&programs->large, "voxel/voxelize.comp", "LARGE 1\n"},
         {&programs->cells, "voxel/voxel_cells.comp", ""},
-        {&programs->repair, "voxel/voxel_lists.comp", "STAGE 0\n"},
-        {&programs->list, "voxel/voxel_lists.comp", "STAGE 1\n"},
-        {&programs->arguments, "voxel/voxel_lists.comp", "STAGE 2\n"},
-        {&programs->tiles, "voxel/voxel_lists.comp", "STAGE 3\n"},
+        {&programs->repair, "voxel/voxel_lists.comp", "STAGE LISTS_RESET\n"},
+        {&programs->list, "voxel/voxel_lists.comp", "STAGE LISTS_APPEND\n"},
+        {&programs->arguments, "voxel/voxel_lists.comp", "STAGE LISTS_ARGUMENTS\n"},
+        {&programs->tiles, "voxel/voxel_lists.comp", "STAGE LISTS_TILE_ARGUMENTS\n"},
     };
     for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++) {
         *wanted[i].program =

@@ -1,9 +1,9 @@
 // Counts values that are not finite. In: a resource. Out: how many there are in it, and where the
 // first is.
 //
-// TEXTURE 0: a buffer of records, of which masks tell the words that are floats and those of which
-// the low or the high half is a half float. TEXTURE 1, 2, 3: a 2D texture, an array, a 3D texture
-// of floats.
+// CHECK_BUFFER: a buffer of records, of which masks tell the words that are floats and those of
+// which the low or the high half is a half float. CHECK_TEXTURE_2D, _ARRAY and _3D: a texture of
+// floats.
 #include "shared/finite_check.h"
 #include "shared/slots.h"
 #include "shared/work_groups.h"
@@ -18,14 +18,14 @@ layout(std430, binding = BIND_CHECK) buffer check_storage
 }
 check;
 
-#if TEXTURE == 0
+#if TEXTURE == CHECK_BUFFER
 layout(std430, binding = BIND_CHECKED) readonly buffer checked_storage
 {
     uint words[];
 };
-#elif TEXTURE == 1
+#elif TEXTURE == CHECK_TEXTURE_2D
 layout(binding = UNIT_CHECKED) uniform sampler2D checked;
-#elif TEXTURE == 2
+#elif TEXTURE == CHECK_TEXTURE_ARRAY
 layout(binding = UNIT_CHECKED) uniform sampler2DArray checked;
 #else
 layout(binding = UNIT_CHECKED) uniform sampler3D checked;
@@ -45,7 +45,7 @@ uint half_is_bad(uint bits)
 // `shape` and `masks` are those of the block: storage is slow to read again for each word.
 uint count_bad(uint at, finite_check_shape shape, finite_check_masks masks)
 {
-#if TEXTURE == 0
+#if TEXTURE == CHECK_BUFFER
     uint bit = 1u << min(at % shape.record_words, 31u);
     uint word = words[at];
     return ((masks.floats & bit) != 0u ? float_is_bad(word) : 0u) +
@@ -56,7 +56,7 @@ uint count_bad(uint at, finite_check_shape shape, finite_check_masks masks)
     uint width = uint(textureSize(checked, level).x);
     uint height = uint(textureSize(checked, level).y);
     ivec3 address = ivec3(at % width, at / width % height, at / width / height);
-#if TEXTURE == 1
+#if TEXTURE == CHECK_TEXTURE_2D
     vec4 texel = texelFetch(checked, address.xy, level);
 #else
     vec4 texel = texelFetch(checked, address, level);

@@ -1,9 +1,10 @@
 // Chooses which cached irradiances to trace next. In: lists of lit cells, cells. Out: queue of cell
 // faces by class of urgency.
 //
-// STAGE 0: faces whose cones have not been traced through the geometry as it is, and faces whose
-// light is not of this generation; those that pixels have asked for first, among them the new
-// before those that changed much before the rest. STAGE 1: arguments of the passes over them.
+// SELECT_FACES: faces whose cones have not been traced through the geometry as it is, and faces
+// whose light is not of this generation; those that pixels have asked for first, among them the new
+// before those that changed much before the rest. SELECT_ARGUMENTS: arguments of the passes over
+// them.
 #define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 
@@ -35,7 +36,7 @@ void enqueue(uint urgency, uint entry)
         queue[urgency * voxels.list_capacity + at] = entry;
 }
 
-#if STAGE == 0
+#if STAGE == SELECT_FACES
 void main()
 {
     uint number = gl_GlobalInvocationID.x;

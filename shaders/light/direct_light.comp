@@ -1,11 +1,11 @@
 // Direct light of punctual lights and planar emitters. In: G-buffer, lights, shadow maps;
 // RAY_SHADOWS: what rays have found to arrive from lights that have a size. Out: radiance in
-// cd/m^2, added to what the environment pass wrote (FIRST 0), to the emission (1), or by itself (2:
-// the debug view of direct light).
+// cd/m^2, added to what ADDED_TO says.
 #include "lib/gbuffer.glsl"
 #include "lib/lighting.glsl"
 #include "lib/radiance_buffer.glsl"
 #include "lib/ray_shadow_filter.glsl"
+#include "shared/display.h"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -15,9 +15,9 @@ void main()
     if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
     surface s = gbuffer_load(pixel);
-#if FIRST == 1
+#if ADDED_TO == ADDED_TO_EMISSION
     vec3 sum = s.emission;
-#elif FIRST == 2
+#elif ADDED_TO == ADDED_TO_NOTHING
     vec3 sum = vec3(0.0);
 #else
     vec3 sum = radiance[pixel_index(pixel)].rgb;

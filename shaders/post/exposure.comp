@@ -1,7 +1,9 @@
 // Automatic exposure from the luminance histogram. In: radiance. Out: exposure scale.
-// STAGE 0 counts log2 luminances; STAGE 1 (one group) takes their mean between two percentiles and
-// maps it to middle grey. Counts are integers, so the result does not depend on timing.
+// EXPOSURE_HISTOGRAM counts log2 luminances; EXPOSURE_MEAN (one group) takes their mean between two
+// percentiles and maps it to middle grey. Counts are integers, so the result does not depend on
+// timing.
 #include "lib/radiance_buffer.glsl"
+#include "shared/display.h"
 
 layout(std430, binding = BIND_EXPOSURE) buffer exposure_storage
 {
@@ -13,7 +15,7 @@ layout(std430, binding = BIND_EXPOSURE) buffer exposure_storage
 const float LOWEST_STOP = -24.0;
 const float BINS_PER_STOP = 2.6;
 
-#if STAGE == 0
+#if STAGE == EXPOSURE_HISTOGRAM
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 shared uint bins[HISTOGRAM_BINS];

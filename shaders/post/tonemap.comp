@@ -1,10 +1,12 @@
 // Radiance to displayed pixels. In: radiance, exposure. Out, by OUTPUT:
-//   0: planar full-range YCbCr 4:2:0 (ITU-R BT.601 as JFIF has it); one invocation does 8 x 2
-//   pixels 1: RGBA8, 2: four floats, linear and unexposed; one invocation does 1 pixel
+//   OUTPUT_YCBCR: planar full-range 4:2:0 (ITU-R BT.601 as JFIF has it); 8 x 2 pixels an invocation
+//   OUTPUT_RGBA8: 1 pixel an invocation
+//   OUTPUT_LINEAR: four floats, unexposed; likewise
 // Scales bilinearly where the rendered size is not the shown one. DISPLAY_READY: values are shown
 // as they are (debug views). BLANK: plain grey, for debug views that have nothing to show.
 #include "lib/display.glsl"
 #include "lib/radiance_buffer.glsl"
+#include "shared/display.h"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
@@ -50,7 +52,7 @@ vec3 displayed(uvec2 shown)
 #endif
 }
 
-#if OUTPUT == 0
+#if OUTPUT == OUTPUT_YCBCR
 uint pack4(vec4 bytes)
 {
     uvec4 b = uvec4(clamp(bytes, 0.0, 255.0) + 0.5);
@@ -97,7 +99,7 @@ void main()
     if (any(greaterThanEqual(pixel, frame.output_size)))
         return;
     uint at = pixel.y * frame.output_size.x + pixel.x;
-#if OUTPUT == 1
+#if OUTPUT == OUTPUT_RGBA8
     words[at] = packUnorm4x8(vec4(displayed(pixel), 1.0));
 #else
     vec3 color = radiance_at(pixel);

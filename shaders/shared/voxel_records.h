@@ -87,6 +87,16 @@
 // Marching a face costs as much as gathering so many.
 #define CACHE_MARCH_COST 10u
 
+// STAGE of voxel/voxel_lists.comp.
+#define LISTS_RESET          0 // repairs the lengths of the free lists and empties the lists
+#define LISTS_APPEND         1 // enters cells and mip voxels
+#define LISTS_ARGUMENTS      2 // lengths become arguments of indirect dispatches
+#define LISTS_TILE_ARGUMENTS 3 // likewise for the tiles of large triangles
+
+// STAGE of gi/cache_select.comp.
+#define SELECT_FACES     0 // enqueues faces by class of urgency
+#define SELECT_ARGUMENTS 1 // arguments of the passes over them
+
 // List 0 has the cells that are lit, of all levels; list n the voxels of level n that are filtered
 // from the finer level.
 #define LIST_LIT 0

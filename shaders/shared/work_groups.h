@@ -5,6 +5,5 @@
 #define GROUP_EDGE      8
 #define LIGHT_TILE_EDGE 16
 #define LINEAR_GROUP    64
-#define HISTOGRAM_BINS  128
 
 #endif

@@ -1,8 +1,8 @@
-// Lists what later passes work on. STAGE 0: mends the free lists' lengths and empties the lists.
-// STAGE 1: enters each cell into the list of those that are lit, or of those that take their light
-// from the finer level; enters the occupied voxels of the mip levels below. STAGE 2:
-// turns the lists' lengths into arguments of indirect dispatches. STAGE 3: likewise for the tiles
-// of large triangles.
+// Lists what later passes work on. LISTS_RESET: repairs the free lists' lengths and empties the
+// lists. LISTS_APPEND: enters each cell into the list of those that are lit, or of those that take
+// their light from the finer level; enters the occupied voxels of the mip levels below.
+// LISTS_ARGUMENTS: turns the lists' lengths into arguments of indirect dispatches.
+// LISTS_TILE_ARGUMENTS: likewise for the tiles of large triangles.
 #include "lib/voxel_work.glsl"
 #include "lib/voxel_cells.glsl"
 
@@ -28,7 +28,7 @@ bool mips_are_dirty()
     return voxels.levels[voxels.cell_level_count - 1u].dirty != 0u;
 }
 
-#if STAGE == 0
+#if STAGE == LISTS_RESET
 void main()
 {
     uint list = gl_GlobalInvocationID.x;
@@ -49,7 +49,7 @@ void main()
     counters[COUNTER_CELLS] = min(counters[COUNTER_CELLS], voxels.cell_capacity);
     counters[COUNTER_SURFELS] = min(counters[COUNTER_SURFELS], voxels.surfel_capacity);
 }
-#elif STAGE == 1
+#elif STAGE == LISTS_APPEND
 // An invocation takes so many cells and makes room for those that are lit at once: the counter is
 // what all would wait for otherwise.
 const uint CELL_RUN = 16u;
@@ -112,7 +112,7 @@ void main()
     for (; of_base != 0u; of_base &= of_base - 1u)
         append_mips(cells[(first + uint(findLSB(of_base))) * CELL_WORDS] & CELL_SLOT_MASK);
 }
-#elif STAGE == 3
+#elif STAGE == LISTS_TILE_ARGUMENTS
 void main()
 {
     if (gl_GlobalInvocationID.x != 0u)
