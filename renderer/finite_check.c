@@ -13,7 +13,7 @@
 
 #define MAX_GROUPS  4096u
 #define EVERY_WORD  0xffffffffu
-#define NOT_WRITTEN RESOURCE_COUNT // by any pass: part of the scene
+#define NOT_WRITTEN RESOURCE_COUNT // written by no pass: part of the scene
 
 // TEXTURE of the shader.
 enum texture_kind {
@@ -28,7 +28,8 @@ struct checked {
     enum resource resource;
     const struct gpu_buffer *buffer; // NULL with `texture`
     uint32_t record_words;
-    uint32_t floats, low_halves, high_halves; // words of a record; bit 31: all from word 31 on
+    uint32_t floats, low_halves,
+        high_halves; // words of a record; bit 31 stands for all words from 31 on
     const struct gpu_texture *texture;
     enum texture_kind kind;
 };
@@ -38,7 +39,7 @@ struct checked_list {
     struct checked items[FINITE_MAX_RESOURCES];
 };
 
-// What the shader reads and writes.
+// Uniforms and result of the shader.
 struct check_block {
     struct finite_check_shape shape;
     struct finite_check_masks masks;
@@ -74,7 +75,7 @@ static void add_texture(struct checked_list *list, const char *name, enum resour
     item->kind = kind;
 }
 
-// The last float of a block of vectors may be of unsigned numbers: a mask of its words.
+// The last float of a vector block may be unsigned integers: a mask of its words.
 static void add_blocks(struct checked_list *list, const char *name, const struct gpu_buffer *buffer,
                        uint32_t words, uint32_t floats)
 {
@@ -89,7 +90,8 @@ static void add_view(struct checked_list *list, const struct view *view)
 {
     add_texture(list, "depth", RESOURCE_DEPTH, view->depth, TEXTURE_PLAIN);
     if (view->gbuffer) {
-        // All else is fractions of integers. The exponent of emission lies as that of a half does.
+        // Everything else is integers and fractions of them. The emission's exponent sits where a
+        // half has its own.
         struct checked *item = add(list, "gbuffer", RESOURCE_GBUFFER);
         item->buffer = view->gbuffer;
         item->record_words = 8;
@@ -110,12 +112,12 @@ static void add_volume(struct checked_list *list, const struct voxel_volume *vol
     faces->record_words = FACE_WORDS + volume->params.cache_cones;
     faces->low_halves = faces->high_halves =
         3u << FACE_LIGHT | 3u << FACE_DIRECT | 3u << FACE_SHOWN;
-    faces->low_halves |= ~((1u << FACE_WORDS) - 1); // distances of the cones' hits
+    faces->low_halves |= ~((1u << FACE_WORDS) - 1); // hit distances of the cones
 }
 
 static void add_scene(struct checked_list *list, const struct gpu_scene *gpu_scene)
 {
-    // The last vector of lights and instances is of numbers that count.
+    // The last vector of lights and of instances is integers.
     add_blocks(list, "lights", gpu_scene->lights, 20, 0xffff);
     add_blocks(list, "instances", gpu_scene->instance_blocks, 20, 0xffff);
     add_blocks(list, "materials", gpu_scene->materials, 32, 0x0fffffff);

@@ -1,4 +1,4 @@
-// Looks for values that are not finite in what a frame wrote and read: see renderer_check_finite().
+// Looks for NaN and infinity in what a frame wrote and read: see renderer_check_finite().
 #ifndef VOXCAST_RENDERER_FINITE_CHECK_H
 #define VOXCAST_RENDERER_FINITE_CHECK_H
 
@@ -14,7 +14,7 @@ struct finite_check {
     struct gpu *gpu;
     const struct gpu_scene *gpu_scene; // NULL for none
     const struct view *view;
-    const struct voxel_volume *volume; // that the view was drawn with; NULL for none
+    const struct voxel_volume *volume; // volume of the view's newest frame; NULL for none
 };
 
 // Runs on the render thread and waits for the GPU.

@@ -1,4 +1,4 @@
-// What a search for values that are not finite has found: plain data.
+// Result of a search for NaN and infinity: plain data.
 #ifndef VOXCAST_RENDERER_FINITE_REPORT_H
 #define VOXCAST_RENDERER_FINITE_REPORT_H
 
@@ -6,13 +6,13 @@
 
 #define FINITE_MAX_RESOURCES 16u
 
-// What a look at the values that frames leave on the GPU has found.
+// NaN and infinity found in one resource on the GPU.
 struct finite_report {
     uint32_t count;
     struct finite_resource {
         const char *name;
-        uint32_t values; // that are infinite or no numbers
-        uint32_t first;  // word of the buffer, or texel, if there are any
+        uint32_t values; // count of NaN and infinity
+        uint32_t first;  // first such word of the buffer, or texel; valid if values > 0
     } resources[FINITE_MAX_RESOURCES];
 };
 

@@ -31,7 +31,7 @@ void log_write(enum log_level level, const char *format, ...)
     gmtime_r(&now.tv_sec, &utc);
     char stamp[32];
     strftime(stamp, sizeof(stamp), "%Y-%m-%dT%H:%M:%S", &utc);
-    // One call per line, so that lines of several threads do not mix.
+    // One call per line keeps the lines of several threads apart.
     fprintf(stderr, "time=%s.%03ldZ level=%s event=%s\n", stamp, now.tv_nsec / 1000000,
             level_names[level], message);
 }

@@ -1,5 +1,5 @@
-// The table of parameters as types of C: enums and their names, and the macros by which structs and
-// defaults are made from rows. Plain data.
+// The parameter table as C types: enums and their names, and macros that make structs and defaults
+// from its rows. Plain data.
 #ifndef VOXCAST_RENDERER_PARAMETER_TYPES_H
 #define VOXCAST_RENDERER_PARAMETER_TYPES_H
 
@@ -17,7 +17,7 @@
 #undef ENUM_VALUE
 #undef ENUM_END
 
-// Names as the protocol and the command line spell them: gi_method_names[GI_METHOD_GRID] is "grid".
+// Names as in the protocol and on the command line: gi_method_names[GI_METHOD_GRID] is "grid".
 #define ENUM_BEGIN(name)
 #define ENUM_VALUE(constant, text)
 #define ENUM_END(name, count) extern const char *const name##_names[count];
@@ -26,16 +26,16 @@
 #undef ENUM_VALUE
 #undef ENUM_END
 
-// What has to be drawn again where a parameter differs.
+// What a change of a parameter invalidates.
 enum invalidation {
     INVALIDATES_NOTHING = 0,
-    INVALIDATES_SURFACES = 1 << 0,     // what pixels see: ids, depth, G-buffer
-    INVALIDATES_LIGHT = 1 << 1,        // light in voxels
-    INVALIDATES_ACCUMULATION = 1 << 2, // what pixels have gathered at rest, summed over pictures
+    INVALIDATES_SURFACES = 1 << 0,     // visibility: ids, depth, G-buffer
+    INVALIDATES_LIGHT = 1 << 1,        // light in voxels and the irradiance cache
+    INVALIDATES_ACCUMULATION = 1 << 2, // samples accumulated while nothing moves
     INVALIDATES_SHADING = 1 << 3,      // radiance of pixels, from the above
-    INVALIDATES_DISPLAY = 1 << 4,      // exposure and tone curve: the picture, from radiance
+    INVALIDATES_DISPLAY = 1 << 4,      // exposure and tone curve: the image, from radiance
 
-    // A part with those that are made from it.
+    // A part with everything that is computed from it.
     INVALIDATES_FROM_DISPLAY = INVALIDATES_DISPLAY,
     INVALIDATES_FROM_SHADING = INVALIDATES_SHADING | INVALIDATES_FROM_DISPLAY,
     INVALIDATES_FROM_ACCUMULATION = INVALIDATES_ACCUMULATION | INVALIDATES_FROM_SHADING,
@@ -44,7 +44,7 @@ enum invalidation {
     INVALIDATES_EVERYTHING = INVALIDATES_SURFACES | INVALIDATES_FROM_LIGHT,
 };
 
-#define PARAMETER_NAME_BYTES 64u // of a string, with its end
+#define PARAMETER_NAME_BYTES 64u // of a string, with its terminator
 
 // PARAMETER_FIELD(type, name) declares the field of a parameter of that type.
 #define PARAMETER_FIELD(type, name)   PARAMETER_ELEMENT_##type name PARAMETER_EXTENT_##type;

@@ -20,17 +20,17 @@
 
 struct renderer {
     struct gpu *gpu;
-    struct gpu_scene *gpu_scene; // NULL while nothing is shown
+    struct gpu_scene *gpu_scene; // NULL while no scene is set
     struct scene *scene;
-    uint64_t scene_number; // tells scenes apart that were loaded one after another
+    uint64_t scene_number; // tells apart scenes that were set one after another
     struct gi gi;
     uint32_t view_count;
-    struct view *views[RENDERER_MAX_VIEWS]; // the first view_count
+    struct view *views[RENDERER_MAX_VIEWS]; // the first view_count are valid
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
-    struct live_scene live_scene;    // of references
-    bool lost;                       // the GL context
-    bool (*admit_frame)(void *user); // NULL: always
+    struct live_scene live_scene;    // for the references
+    bool lost;                       // the GL context is lost
+    bool (*admit_frame)(void *user); // NULL: always admitted
     void *user;
 };
 
@@ -228,8 +228,8 @@ static bool shows_reference(const struct frame_params *params)
            (params->debug_view == DEBUG_VIEW_FINAL || params->debug_view == DEBUG_VIEW_DIRECT);
 }
 
-// Keeps the view's reference in step, if it has one, and takes its picture into the frame; until
-// there is one, the frame is drawn by direct light. Tells what to do: RENDER_DRAWN is to draw.
+// Updates the view's reference, if it has one, and puts its image into the frame. Until there is
+// one, the frame shows direct light. Returns RENDER_DRAWN if the frame is to be drawn.
 static enum render_result take_reference(struct renderer *renderer, struct frame *frame, bool same)
 {
     struct view *view = frame->view;
@@ -263,8 +263,8 @@ static enum render_result take_reference(struct renderer *renderer, struct frame
     return RENDER_DRAWN;
 }
 
-// How far the frame that has just been drawn has come: the light in voxels, then the pictures with
-// turned cones that were averaged.
+// Convergence of the frame that has just been drawn: first of the light in voxels, then of the
+// accumulation.
 static float view_convergence(const struct frame *frame)
 {
     if (shows_reference(frame->params))
@@ -283,7 +283,7 @@ bool renderer_admit_frame(const struct renderer *renderer)
     return !renderer->admit_frame || renderer->admit_frame(renderer->user);
 }
 
-// Notes what the host needs to take the frame out of the ring once the GPU is through.
+// Records what the host needs to collect the frame once the GPU has finished it.
 static void queue_readback(const struct frame *frame, double started_ms)
 {
     struct view *view = frame->view;
@@ -364,7 +364,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     if (!gpu_scene_update(gpu_scene, out_error))
         return RENDER_FAILED;
     effects_plan(&frame.plan, gpu_scene, params);
-    view->last_plan = frame.plan; // reasons for skipping passes may point there
+    view->last_plan = frame.plan; // skip reasons may point into the plan
     if (!draw_frame(renderer, &frame, out_error)) {
         view->drawn = false;
         return RENDER_FAILED;
@@ -382,7 +382,7 @@ void renderer_view_invalidate(struct view *view)
     view->drawn = false;
 }
 
-// Tells the volume how the frame's cones have done.
+// Hands the counters that the frame read back to its volume.
 static void collect_light(struct renderer *renderer, struct view *view,
                           const struct ring_frame *slot, const void *bytes)
 {
@@ -526,7 +526,7 @@ bool renderer_pick(struct renderer *renderer, const struct view_camera *camera, 
     camera_frame_init(&frame, camera);
     float direction[3];
     camera_ray(&frame, width, height, x + 0.5f, y + 0.5f, direction);
-    glm_vec3_normalize(direction); // so that the hit's distance is in metres
+    glm_vec3_normalize(direction); // makes the hit's distance metres
     return ray_scene_intersect(renderer->ray_scene, camera->eye, direction, FLT_MAX, out_hit);
 }
 

@@ -100,7 +100,7 @@ void render_settings_take(struct render_settings *settings, const struct render_
 #undef PARAMETER
 }
 
-// A setting that invalidates nothing would never reach the picture.
+// A setting that invalidates nothing would never reach the image.
 #define PARAMETER(record, name, type, range, unit, initial, handling, redraw, ...)                 \
     _Static_assert(INVALIDATES_##redraw != INVALIDATES_NOTHING, #name);
 #include "protocol/parameters/settings.def"

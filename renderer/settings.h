@@ -1,4 +1,4 @@
-// What a frame looks like beside the scene itself: plain data, set by whoever asks for the frame.
+// What a frame shows besides the scene: plain data, set by the caller of the frame.
 #ifndef VOXCAST_RENDERER_SETTINGS_H
 #define VOXCAST_RENDERER_SETTINGS_H
 
@@ -26,19 +26,20 @@ struct render_settings {
 
 // One row of the quality table: what costs time and may be traded for it.
 struct quality_level {
-    float resolution_scale;   // rendered size over shown size; 2 averages four samples a pixel
+    float resolution_scale;   // rendered size over output size; 2 averages four samples per pixel
     float texture_anisotropy; // 1 is plain trilinear
     uint32_t shadow_taps;     // PCF taps per light and pixel
-    uint32_t shadow_cascades; // of the sun, around the camera, beside the map of the whole scene
+    uint32_t
+        shadow_cascades; // of the sun around the camera, in addition to the map of the whole scene
     enum voxel_resolution voxel_resolution; // on a GPU at least 128
     enum cone_set cone_set;
     float cone_step;
     enum gather_mode gather_mode;
-    uint32_t ray_step;          // where rays gather: every how many-th rendered pixel has them,
-    uint32_t ray_pictures;      // and how many pictures of one ray each are averaged
-    bool cone_shadows;          // soft shadows by cones, where rays do not show them
-    float specular_roughness;   // rougher surfaces reflect as if by the cached irradiance
-    float specular_reflectance; // and so do those that reflect less than this head-on
+    uint32_t ray_step;          // final gather by rays: every how many-th rendered pixel traces,
+    uint32_t ray_pictures;      // and how many samples each accumulates
+    bool cone_shadows;          // soft shadows by cones where rays do not trace them
+    float specular_roughness;   // rougher surfaces take specular light from the cached irradiance,
+    float specular_reflectance; // and so do those with a lower reflectance at normal incidence
 };
 
 extern const struct quality_level quality_levels[QUALITY_COUNT];
@@ -52,18 +53,18 @@ struct view_camera {
 
 void render_settings_init(struct render_settings *settings);
 
-// What has to be drawn again for `b` after `a`: enum invalidation of all that differs; 0 where they
-// are equal.
+// What to redraw to go from `a` to `b`: the invalidation bits of all settings that differ; 0 if
+// equal.
 uint32_t render_settings_changes(const struct render_settings *a, const struct render_settings *b);
 
-// Of the settings that invalidate any of `parts`: it differs where one of them does.
+// Hash of the settings that invalidate any of `parts`.
 uint64_t render_settings_hash(const struct render_settings *settings, uint32_t parts);
 
-// Takes over the settings that invalidate all of `parts` and nothing else.
+// Copies from `from` the settings whose invalidation bits are exactly `parts`.
 void render_settings_take(struct render_settings *settings, const struct render_settings *from,
                           uint32_t parts);
 
-// Whether a view shows what only global illumination has.
+// Whether the view shows something that only global illumination computes.
 bool debug_view_needs_voxels(enum debug_view view);
 
 #endif
