@@ -71,7 +71,7 @@ static bool sphere_is_outside(const vec4 planes[6], const float center[3], float
     return false;
 }
 
-// How one instance is culled: everything that stays the same over its clusters.
+// Culling data of one instance: what is constant over its clusters.
 struct instance_cull {
     const vec4 *planes;
     float clip_rows[4][4]; // of clip_from_local
@@ -108,7 +108,7 @@ static void instance_cull_init(struct instance_cull *cull,
     }
 }
 
-// Sides of planes survive any affine placement, so that facing can be told in local space.
+// Affine transforms keep the sides of planes, so facing is tested in local space.
 static bool cluster_is_hidden(const struct instance_cull *cull,
                               const struct gpu_scene_cluster *cluster)
 {
@@ -126,7 +126,7 @@ static bool cluster_is_hidden(const struct instance_cull *cull,
            cluster->cutoff * glm_vec3_norm(from_eye) + cluster->radius;
 }
 
-// Appends one draw of triangles first .. first + count - 1 of an instance.
+// Appends one draw: triangles first to first + count - 1 of an instance.
 static void append_draw(struct draw_list *list, uint32_t *total, const struct gpu_scene *gpu_scene,
                         const struct gpu_scene_instance *instance, const struct instance_cull *cull,
                         uint32_t first, uint32_t count)

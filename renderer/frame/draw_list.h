@@ -1,4 +1,4 @@
-// Indirect draws of the triangles that a camera or light can see, grouped by kind and culling.
+// Indirect draws of the triangles visible to a camera or light, grouped by kind and culling mode.
 #ifndef VOXCAST_RENDERER_FRAME_DRAW_LIST_H
 #define VOXCAST_RENDERER_FRAME_DRAW_LIST_H
 
@@ -14,17 +14,17 @@ struct draw_list {
     uint32_t count[DRAW_GROUP_COUNT];
 };
 
-// Makes room for draws of `resident`. False when memory ends.
+// Reserves space for the draws of `gpu_scene`. False when memory runs out.
 bool draw_list_reserve(struct draw_list *list, const struct gpu_scene *gpu_scene);
 void draw_list_finish(struct draw_list *list);
 
-// Fills the list with the clusters of visible instances that reach into the clip volume
-// -w <= x, y <= w, 0 <= z <= w. With an `eye` (world), leaves out clusters that only show it the
-// backs of single-sided triangles. Cost: linear in clusters near the volume.
+// Fills the list with the clusters of visible instances that overlap the clip volume -w <= x, y <=
+// w, 0 <= z <= w. With an `eye` (world), also skips clusters of which it sees only back faces of
+// single-sided triangles. Cost: linear in the clusters near the volume.
 void draw_list_fill(struct draw_list *list, const struct gpu_scene *gpu_scene,
                     const mat4 clip_from_world, const float *eye);
 
-// Draws the groups of one kind. `cull_by_group` false draws both sides of all triangles.
+// Draws the groups of one kind. With `cull_by_group` false, draws both sides of all triangles.
 void draw_list_draw(const struct draw_list *list, const struct gpu_scene *gpu_scene,
                     const struct gpu_program *program, enum draw_kind kind, bool cull_by_group);
 

@@ -63,8 +63,8 @@ static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t 
     decide(plan, effect, count > 0, reason);
 }
 
-// Effects of global illumination. Returns those that the settings allow: the rest stay off even
-// where everything is forced.
+// Effects of global illumination. Returns those that the settings allow; the others stay off even
+// when all effects are forced.
 static uint32_t plan_indirect(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
                               const struct frame_params *params)
 {

@@ -1,4 +1,4 @@
-// Which effects a frame needs, and why: only these get shader code, passes and memory.
+// Which effects a frame needs, and why. Only these get shader code, passes and memory.
 #ifndef VOXCAST_RENDERER_FRAME_EFFECTS_H
 #define VOXCAST_RENDERER_FRAME_EFFECTS_H
 
@@ -11,32 +11,32 @@ enum effect {
     EFFECT_TEXTURES,
     EFFECT_ALPHA_MASK,
     EFFECT_VERTEX_COLORS,
-    EFFECT_SPECULAR, // any material that reflects like a mirror or gloss
+    EFFECT_SPECULAR, // any material with a specular lobe
     EFFECT_PUNCTUAL_LIGHTS,
     EFFECT_AREA_LIGHTS, // planar emitters
     EFFECT_SHADOWS,
-    EFFECT_SINGLE_VIEW_SHADOWS, // of the sun and of spots: one view each
-    EFFECT_POINT_SHADOWS,       // of lights that shine all around: six views each
+    EFFECT_SINGLE_VIEW_SHADOWS, // directional and spot lights: one view each
+    EFFECT_POINT_SHADOWS,       // point lights: six views each
     EFFECT_LIGHT_TILES,         // lights of limited range
     EFFECT_BLINN_PHONG,
     EFFECT_ENVIRONMENT,
     EFFECT_TRANSPARENCY, // blended or transmissive materials
     EFFECT_AUTO_EXPOSURE,
-    EFFECT_INDIRECT_DIFFUSE, // light that matte surfaces pass on; all of the below need voxels, too
-    EFFECT_MULTI_BOUNCE,     // more than one reflection
-    EFFECT_INDIRECT_SPECULAR, // what glossy surfaces mirror
+    EFFECT_INDIRECT_DIFFUSE,  // diffuse indirect light; this and all below need voxels
+    EFFECT_MULTI_BOUNCE,      // more than one bounce
+    EFFECT_INDIRECT_SPECULAR, // traced reflections
     EFFECT_REFRACTION,
-    EFFECT_SOFT_SHADOWS, // of lights that have a size
+    EFFECT_SOFT_SHADOWS, // of area and sphere lights
     EFFECT_AMBIENT_OCCLUSION,
-    EFFECT_ENVIRONMENT_LIGHT, // cones that leave the scene see the environment
+    EFFECT_ENVIRONMENT_LIGHT, // cones that miss the scene sample the environment
     EFFECT_VOXEL_COLORS,      // textures or vertex colours in voxels
-    EFFECT_CLIP_LEVELS,       // voxels in nested cubes rather than a grid
+    EFFECT_CLIP_LEVELS,       // clip levels rather than one grid
     EFFECT_COUNT
 };
 
 #define EFFECT_BIT(effect) (1u << (effect))
 
-// What picks the code of shaders/lib/lighting.glsl and shaders/lib/geometry.glsl.
+// Effects that select code of shaders/lib/lighting.glsl and shaders/lib/geometry.glsl.
 #define DIRECT_LIGHT_EFFECTS                                                                       \
     (EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_SINGLE_VIEW_SHADOWS) |                         \
      EFFECT_BIT(EFFECT_POINT_SHADOWS) | EFFECT_BIT(EFFECT_LIGHT_TILES) |                           \
@@ -57,14 +57,14 @@ struct effect_plan {
     char reasons[EFFECT_COUNT][96];
 };
 
-// Reads what the scene holds and what the settings ask for.
+// Plans effects from the scene's contents and the settings.
 void effects_plan(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
                   const struct frame_params *params);
 
 const char *effect_name(enum effect effect);
 
-// Writes "NAME 0|1" lines for the effects in `mask`, and what kinds of textures there are if
-// EFFECT_TEXTURES is among them: the defines of a shader permutation.
+// Writes the defines of a shader permutation: a line "NAME 0|1" for each effect in `mask` and, if
+// EFFECT_TEXTURES is among them, which kinds of textures exist.
 void effects_write_defines(uint32_t bits, uint32_t mask, const struct gpu_scene *gpu_scene,
                            char *out_text, size_t out_size);
 

@@ -9,8 +9,8 @@
 #include "renderer/gpu_scene/bvh.h"
 #include "renderer/frame/view.h"
 
-// Nearest visible distance, relative to the scene's diagonal, and the most it is in m: what is near
-// is to be seen however far the scene reaches. Reversed Z keeps precision anyway.
+// Near plane relative to the scene's diagonal, and its maximum in m: near objects stay visible
+// however large the scene is. Reversed Z keeps the precision anyway.
 #define NEAR_FRACTION 1e-5f
 #define NEAR_MAX_M    5e-5f
 
@@ -20,7 +20,7 @@ static void fill_camera(const struct frame *frame, struct frame_block *block)
     struct camera_frame camera;
     camera_frame_init(&camera, &frame->camera);
     block->near_m = fminf(frame->gpu_scene->diagonal_m * NEAR_FRACTION, NEAR_MAX_M);
-    // Rays span the shown picture's aspect, whatever the rendered size was rounded to.
+    // Rays span the output's aspect, whatever the rendered size was rounded to.
     float aspect = (float)params->width / (float)params->height;
     camera_clip_from_world(&camera, frame->camera.eye, aspect, block->near_m,
                            block->clip_from_world);

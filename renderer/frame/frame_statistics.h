@@ -1,4 +1,4 @@
-// What a frame did and what that took: plain data.
+// What a frame did and what it cost: plain data.
 #ifndef VOXCAST_RENDERER_FRAME_FRAME_STATISTICS_H
 #define VOXCAST_RENDERER_FRAME_FRAME_STATISTICS_H
 
@@ -18,17 +18,17 @@ struct pass_statistics {
 struct effect_statistics {
     const char *name;
     bool on;
-    char reason[96]; // in words, e.g. "no transparent material in the scene"
+    char reason[96]; // text, e.g. "no transparent material in the scene"
 };
 
 struct memory_statistics {
-    const char *name; // such as "textures", "geometry", "shadow_maps", "view_targets"
+    const char *name; // e.g. "textures", "geometry", "shadow_maps", "view_targets"
     uint64_t bytes;
 };
 
-// Values that were wrong, or more than there is room for, and were clamped or left out.
+// Values that were invalid or exceeded a capacity, and were clamped or left out.
 struct reject_statistics {
-    const char *name; // such as "triangles_left_out"
+    const char *name; // e.g. "triangles_left_out"
     uint64_t count;
 };
 

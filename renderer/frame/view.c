@@ -85,7 +85,7 @@ size_t view_output_layout(const struct frame_params *params, size_t out_offsets[
         out_pitches[0] = width * (params->output == FRAME_OUTPUT_RGBA8 ? 4 : 16);
         return (size_t)out_pitches[0] * height;
     }
-    // Blocks of 8 x 2 pixels write whole words, so rows are padded to 8 and to 2.
+    // Blocks of 8 x 2 pixels write whole words: pad rows to 8 and their number to 2.
     uint32_t rows = (height + 1) & ~1u;
     out_pitches[0] = (width + 7) & ~7u;
     out_pitches[1] = out_pitches[2] = out_pitches[0] / 2;
@@ -133,7 +133,7 @@ static bool prepare_cascades(struct view *view, struct shadow_map *map, uint32_t
     return true;
 }
 
-// What indirect light needs beside the volume.
+// Buffers for indirect light besides the volume.
 static bool prepare_indirect(struct view *view, const struct frame *frame)
 {
     bool done = true;
@@ -160,14 +160,14 @@ static bool prepare_indirect(struct view *view, const struct frame *frame)
     return done;
 }
 
-// Rendered size over shown size.
+// Rendered size over output size.
 static float resolution_scale(const struct frame *frame)
 {
-    // A reference has as many samples per pixel as it likes.
+    // The reference chooses its own samples per pixel.
     if (frame->params->settings.gi_method == GI_METHOD_REFERENCE)
         return 1.0f;
-    // While light settles no picture lasts, so that those of a camera at rest are not supersampled
-    // until it has; unless pixels are what asks for light.
+    // While light converges every image is soon replaced: do not supersample a static camera until
+    // then. Except without multi-bounce, where pixels request the faces.
     bool settling = frame->volume && !frame->light_converged && !frame->visibility_changed &&
                     frame_has(frame, EFFECT_MULTI_BOUNCE);
     if (settling)
@@ -181,7 +181,7 @@ bool view_prepare(struct view *view, const struct frame *frame)
     const struct gpu_scene *gpu_scene = frame->gpu_scene;
     uint32_t effect_bits = frame->plan.bits;
     float scale = resolution_scale(frame);
-    // The largest views are not supersampled beyond what GPU memory is planned for.
+    // GPU memory is planned for VIEW_MAX_WIDTH x VIEW_MAX_HEIGHT: do not supersample beyond it.
     if ((float)params->width * scale * (float)params->height * scale >
         (float)VIEW_MAX_WIDTH * VIEW_MAX_HEIGHT)
         scale = 1.0f;

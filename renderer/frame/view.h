@@ -1,4 +1,4 @@
-// One camera's targets on the GPU and the ring of frames on their way to host memory.
+// One camera's GPU targets, and the ring of frames in readback.
 #ifndef VOXCAST_RENDERER_FRAME_VIEW_H
 #define VOXCAST_RENDERER_FRAME_VIEW_H
 
@@ -11,26 +11,26 @@
 #include "renderer/path_tracer/progressive.h"
 #include "renderer/gpu_scene/gpu_scene.h"
 
-// Behind the pixels in a ring buffer: the exposure that was found automatically.
+// Behind the pixels in a ring buffer: the automatic exposure.
 #define VIEW_EXPOSURE_BYTES 16u
-// Behind that: what the counters of the volume said (struct voxel_light_report).
+// Behind that: the volume's counters (struct voxel_light_report).
 #define VIEW_REPORT_BYTES 24u
 
 struct ring_frame {
     struct gpu_buffer *pixels;
     struct gpu_fence *fence;
-    struct frame_pixels result; // planes filled in at collection
+    struct frame_pixels result; // planes are set at collection
     double started_ms;
-    float fixed_exposure; // scale in use; 0 if it was found automatically
+    float fixed_exposure; // scale in use; 0: automatic
     float exposure_bias;
     uint64_t volume_serial;
-    uint32_t generation; // of the cache that the frame traced; 0 for none
+    uint32_t generation; // of the cache, traced by this frame; 0 for none
 };
 
 struct view {
     struct gpu *gpu;
     struct gpu_timer *timer;
-    uint32_t width; // rendered; 0 before the first frame
+    uint32_t width; // rendered size; 0 before the first frame
     uint32_t height;
 
     struct gpu_buffer *frame_block;
@@ -51,34 +51,33 @@ struct view {
     struct gpu_buffer *shadow_views; // the scene's and then this view's cascades
     uint64_t shadow_revision_seen;
     uint64_t shadow_epoch_seen;
-    struct shadow_map *cascade_owner; // where the cascades below were taken from
+    struct shadow_map *cascade_owner; // where the cascades below were reserved
     uint32_t cascade_count;
     uint32_t cascade_numbers[MAX_CASCADES];
     float cascade_center[MAX_CASCADES][3];
-    bool cascade_fitted[MAX_CASCADES]; // the centre above is to be kept while it suits
-    bool cascade_stale[MAX_CASCADES];  // to be drawn
+    bool cascade_fitted[MAX_CASCADES]; // cascade_center is valid and kept while it fits
+    bool cascade_stale[MAX_CASCADES];  // to be rendered
     struct shadow_view_block cascades[MAX_CASCADES];
 
     struct ring_frame ring[RENDERER_FRAMES_IN_RING];
-    uint32_t ring_next;   // where the next frame goes
-    uint32_t ring_oldest; // the next to collect
+    uint32_t ring_next;   // slot of the next frame
+    uint32_t ring_oldest; // slot of the next to collect
     uint32_t ring_count;
-    bool collected; // the oldest is with the caller
+    bool collected; // the caller holds the oldest
 
-    uint64_t volume_serial; // of the volume that the newest frame was drawn with; 0 for none
+    uint64_t volume_serial; // volume of the newest frame; 0 for none
 
+    struct gpu_buffer *accumulation; // sums of samples while nothing moves
+    uint32_t accumulated_samples;    // samples in those sums
+    uint64_t shown_light;            // light version of the volume in the last image
+    uint32_t accumulate_only_count;  // frames since the last image
+    uint64_t accumulation_key;       // hash of everything that invalidates the accumulation
     struct gpu_buffer
-        *accumulation;            // irradiance that pixels have gathered, summed over still frames
-    uint32_t accumulated_samples; // pictures in that sum
-    uint64_t shown_light;         // version of the light in voxels that the newest picture shows
-    uint32_t accumulate_only_count; // frames since then
-    uint64_t accumulation_key; // of the light, of the cones that saw it, and of what was asked for
-    struct gpu_buffer
-        *glossy_tiles; // arguments and numbers of tiles that reflections are traced in
+        *glossy_tiles; // dispatch arguments and numbers of tiles with traced reflections
 
     struct live_reference reference;
 
-    // What the newest drawn frame was made from.
+    // Inputs of the newest drawn frame.
     bool drawn;
     bool surfaces_stale; // ids, depth and G-buffer are of an earlier frame
     struct frame_params last_params;
@@ -96,14 +95,14 @@ void view_destroy(struct view **view);
 
 struct frame;
 
-// Makes the targets fit the frame's size, effects and gathering. False when GPU memory ends.
+// Fits the targets to the frame's size, effects and final gather. False when GPU memory runs out.
 bool view_prepare(struct view *view, const struct frame *frame);
 
-// Bytes of one output picture, and where its planes lie.
+// Bytes of one output image; offsets and row pitches of its planes.
 size_t view_output_layout(const struct frame_params *params, size_t out_offsets[3],
                           uint32_t out_pitches[3]);
 
-// Gives the view's cascades back to the shadow map they came from; before that goes.
+// Returns the view's cascades to the shadow map that they came from. Call before that is destroyed.
 void view_release_cascades(struct view *view);
 
 void view_bind(const struct view *view);
