@@ -1,20 +1,20 @@
-// How pixels come by indirect light in a frame: from the cache, or by samples of their own, which
-// are accumulated while nothing moves.
+// Final gather of a frame: pixels read the cache, or trace samples of their own that accumulate
+// while nothing moves.
 #include "renderer/frame/view.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gi/light_hash.h"
 #include "renderer/gi/volume.h"
 
-// Frames in a row that show nothing new while light settles.
+// Frames in a row without a new image while the cache converges.
 #define MAX_ACCUMULATE_ONLY_FRAMES 7u
-// Fewer rays a pixel are noisier than the cache, which is shown instead.
+// With fewer samples rays are noisier than the cache, which is shown instead.
 #define SHOWN_RAYS 16u
-// Pictures of a camera at rest that are averaged where pixels gather.
+// Samples that cone gathering accumulates.
 #define CONE_PICTURES 4u
-// Above every roughness.
+// Greater than any roughness.
 #define ALL_ROUGHNESS 1.01f
 
-// While light settles for pictures that are dear to draw, a few frames only do that.
+// While the cache converges, skip shading for up to MAX_ACCUMULATE_ONLY_FRAMES frames.
 static void converge_without_shading(struct frame *frame, const struct voxel_volume *volume)
 {
     struct view *view = frame->view;
@@ -33,8 +33,8 @@ static void show_cache(struct frame *frame)
     frame->view->accumulated_samples = 0;
 }
 
-// Whether the picture of before stays until rays are enough. Where bounces are counted the cache
-// holds one less than is shown and cannot stand in for rays.
+// Keep the last image until SHOWN_RAYS samples are in. Not with a limited number of bounces: then
+// the cache holds one bounce less than is shown and cannot replace the rays.
 static bool keeps_last_image(const struct frame *frame, uint32_t count)
 {
     uint32_t enough =
@@ -42,8 +42,8 @@ static bool keeps_last_image(const struct frame *frame, uint32_t count)
     return frame->gather == GATHER_RAYS && count < enough && frame->params->settings.bounces == 0;
 }
 
-// One more picture of what pixels gather, or those of before if they are enough. What rays have
-// found is shown each time that their number has doubled, and with the last.
+// Adds one sample, unless all are in. With rays, shows the accumulation whenever the sample count
+// has doubled, and with the last sample.
 static void accumulate_once(struct frame *frame, struct voxel_volume *volume)
 {
     struct view *view = frame->view;
@@ -62,7 +62,7 @@ bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
 {
     struct view *view = frame->view;
     struct voxel_volume *volume = frame->volume;
-    // Where pixels accumulate nothing, what they have accumulated is freed.
+    // No accumulation in this mode: forget its samples.
     if (!volume || frame->gather == GATHER_CACHE)
         view->accumulated_samples = 0;
     if (!volume)
@@ -79,7 +79,7 @@ bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
         key = hash_word(key, volume->lit_key);
         key = hash_word(key, view->volume_serial);
         key = hash_word(key, (uint64_t)frame->gather);
-        // Of what nobody asked for nothing has been gathered.
+        // Planes of effects and views that were off hold nothing.
         key = hash_word(key, frame->plan.bits);
         key = hash_word(key, (uint64_t)frame->params->debug_view);
         key = hash_word(key,
@@ -97,7 +97,7 @@ bool gi_plan_accumulation(struct frame *frame, struct error *out_error)
             accumulate_once(frame, volume);
         }
     }
-    // One ray does for any lobe, so that all gloss has rays of its own where there are any.
+    // One ray serves any lobe: where rays gather, every specular lobe is traced.
     bool rays = frame->gather == GATHER_RAYS;
     block->specular_max_roughness = rays ? ALL_ROUGHNESS : frame->quality->specular_roughness;
     block->specular_min_reflectance = rays ? 0.0f : frame->quality->specular_reflectance;

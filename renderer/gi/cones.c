@@ -14,8 +14,8 @@ uint32_t cone_set_count(enum cone_set set)
     return counts[set];
 }
 
-// Directions of equal solid angle on a spiral (Vogel 1979); each cone takes the half-angle that its
-// share of the hemisphere has.
+// Directions of equal solid angle on a spiral (Vogel 1979). The half-angle of each cone covers its
+// fraction of the hemisphere.
 void cone_directions_init(struct cone_directions *directions, enum cone_set set)
 {
     uint32_t count = counts[set];

@@ -1,4 +1,4 @@
-// Sets of cones over a hemisphere.
+// Cone sets over a hemisphere.
 #ifndef VOXCAST_RENDERER_GI_CONES_H
 #define VOXCAST_RENDERER_GI_CONES_H
 
@@ -13,7 +13,7 @@ struct cone_directions {
 
 uint32_t cone_set_count(enum cone_set set);
 
-// `set` is not CONE_SET_AUTO.
+// `set` must not be CONE_SET_AUTO.
 void cone_directions_init(struct cone_directions *directions, enum cone_set set);
 
 #endif

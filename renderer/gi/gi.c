@@ -8,18 +8,18 @@
 #include "renderer/gi/light_hash.h"
 #include "renderer/frame/view.h"
 
-// Stored radiance of the brightest lit surface should lie about here, far from either end of what
-// half floats hold.
+// Target for the stored radiance of the brightest lit surface: far from both ends of a half float's
+// range.
 #define STORED_PEAK 256.0f
-// So much brighter or darker than when the scale was chosen, radiance is still stored well.
+// Keep the scale while radiance is at most so much brighter or darker than when it was chosen.
 #define SCALE_GROWTH 8.0f
 #define SCALE_DECAY  64.0f
-// Ambient occlusion counts what is nearer than this share of the scene's diagonal.
+// Reach of ambient occlusion, as a fraction of the scene's diagonal.
 #define OCCLUSION_FRACTION 0.05f
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
-// Cones of the cache where the settings do not say.
+// Cache cones where the settings leave them open.
 #define CACHE_CONES CONE_SET_16
 #define CACHE_STEP  1.0f
 
@@ -63,7 +63,7 @@ struct voxel_volume *gi_find(const struct gi *gi, uint64_t serial)
     return NULL;
 }
 
-// The cache is shared by views of different quality, so it does not depend on it.
+// Independent of quality: views of different quality share the cache.
 static enum cone_set cache_cones_of(const struct render_settings *settings)
 {
     return settings->cone_set == CONE_SET_AUTO ? CACHE_CONES : settings->cone_set;
@@ -74,8 +74,8 @@ static uint32_t edge_of(enum voxel_resolution resolution)
     return 32u << resolution;
 }
 
-// GPUs afford 128. On CPUs a scene that calls for several clip levels settles several times sooner
-// with 64, of which more levels make voxels as fine near the camera.
+// GPUs afford 128. On CPUs a scene that needs several clip levels converges several times sooner
+// with 64, and its extra levels keep voxels as fine near the camera.
 static enum voxel_resolution automatic_resolution(const struct frame *frame,
                                                   const struct voxel_volume_params *params)
 {
@@ -115,8 +115,8 @@ static bool same_params(const struct voxel_volume_params *a, const struct voxel_
            a->colors == b->colors;
 }
 
-// The first volume of the frame's kind (shared, or of one view only) that the view may draw with,
-// or else `out_shared`, another view's clipmap.
+// First volume of the frame's kind (shared, or owned by one view) that the view may draw with. Else
+// `out_shared` is another view's clipmap, if any.
 static struct gi_volume *find_fitting(struct gi *gi, const struct frame *frame,
                                       const struct voxel_volume_params *params,
                                       struct gi_volume **out_shared)
@@ -134,8 +134,8 @@ static struct gi_volume *find_fitting(struct gi *gi, const struct frame *frame,
     return NULL;
 }
 
-// A volume of the frame's kind that is of no more use, since others are wanted in its place: the
-// view's own, or of settings that nobody has any more. NULL for none.
+// A volume of the frame's kind that can be replaced: the view's own, or one whose settings are no
+// longer in use. NULL for none.
 static struct gi_volume *find_replaceable(struct gi *gi, const struct frame *frame,
                                           const struct voxel_volume_params *params)
 {
@@ -148,7 +148,7 @@ static struct gi_volume *find_replaceable(struct gi *gi, const struct frame *fra
         if (it->owner == frame->view)
             return it;
         if (!own)
-            stale = it; // shared settings have changed, and its views have not been drawn since
+            stale = it; // shared settings have changed; its views have not been drawn since
     }
     return stale;
 }
@@ -161,8 +161,8 @@ static uint32_t count_volumes(const struct gi *gi, bool own)
     return count;
 }
 
-// The volume to draw with: a view's own clipmap, or the grid; a shared clipmap where there are too
-// many. NULL if memory ends, or too many views have voxels of their own.
+// Finds or creates the volume to draw with: the view's own clipmap, or the grid; another view's
+// clipmap when there are too many. NULL when memory runs out or too many views own voxels.
 static struct gi_volume *find_volume(struct gi *gi, const struct frame *frame,
                                      const struct voxel_volume_params *params)
 {
@@ -197,10 +197,9 @@ static float brightest_channel(const float color[3])
     return fmaxf(color[0], fmaxf(color[1], color[2]));
 }
 
-// A power of two that radiance is divided by, so that half floats hold it: from the illuminance
-// that lights bring to surfaces some voxels away, all to the same, from emission and from the
-// environment.
-// Kept while it still suits, since what is stored was divided by it.
+// Power of two that radiance is divided by, so that it fits half floats. Estimated from the sum of
+// all lights' illuminance at 5 % of the scene's diagonal, from emission and from the environment.
+// Kept while it still fits, since stored radiance was divided by it.
 static float radiance_scale(const struct gpu_scene *gpu_scene, float before)
 {
     const struct scene *scene = gpu_scene->scene;
@@ -227,8 +226,8 @@ static float radiance_scale(const struct gpu_scene *gpu_scene, float before)
     return suits ? before : scale;
 }
 
-// Of everything that the light in voxels depends on; nothing of a view's quality, since views of
-// different quality share a volume and would set it back in turns.
+// Hash of everything that light in voxels depends on. Excludes quality: views of different quality
+// share a volume and would invalidate it in turn.
 static uint64_t light_key(const struct frame *frame)
 {
     const struct render_settings *settings = &frame->params->settings;
@@ -278,7 +277,7 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     block->indirect_intensity = settings->indirect_intensity;
 }
 
-// Whether pixels read the cache rather than gather the last bounce themselves.
+// Whether pixels read the cache instead of gathering the last bounce themselves.
 static bool frame_shows_cache(const struct frame *frame)
 {
     enum debug_view view = frame->params->debug_view;
@@ -286,14 +285,14 @@ static bool frame_shows_cache(const struct frame *frame)
            view == DEBUG_VIEW_AMBIENT_OCCLUSION || view == DEBUG_VIEW_CACHE_AGE;
 }
 
-// Whether pixels gather the only bounce that there is, but for transparent layers, which read the
-// cache, and for which no pixel asks.
+// Whether only transparent layers read the cache: with one bounce pixels gather it themselves, and
+// no pixel requests faces for the layers.
 static bool layers_alone_show_cache(const struct frame *frame)
 {
     return frame->params->settings.bounces == 1 && frame_has(frame, EFFECT_TRANSPARENCY);
 }
 
-// Whether there is no volume because others' views have all that views may have for themselves.
+// Whether the frame has no volume because other views use up all own volumes.
 static bool too_many_own(const struct gi *gi, const struct frame *frame)
 {
     return frame->params->own_voxels && count_volumes(gi, true) == GI_MAX_OWN_VOLUMES;

@@ -1,4 +1,4 @@
-// Hashes (FNV-1a) of what light depends on.
+// FNV-1a hashes of what light depends on.
 #ifndef VOXCAST_RENDERER_GI_LIGHT_HASH_H
 #define VOXCAST_RENDERER_GI_LIGHT_HASH_H
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-// Time that a frame may spend on cones of the cache, on a CPU: little while the camera moves.
+// CPU time that a frame may spend on cache cones: little while the camera moves.
 #define MOVING_TRACE_MS 10.0
 #define REST_TRACE_MS   120.0
 #define FIRST_ENTRY_MS  0.006
@@ -11,12 +11,12 @@
 #define MIN_REST_BUDGET 6000.0
 #define MAX_BUDGET      1e6
 #define GPU_BUDGET      131072u
-// Light has settled when what is still to come, a geometric series, is less than this share of any
-// voxel face's light.
+// Converged when the residual, estimated as a geometric series, is below this fraction of the
+// brightest voxel face.
 #define SETTLED_REST    0.008f
 #define MAX_GENERATIONS 48u
-// Pixels ask for faces in a pattern of so many frames: the cache is complete when nothing was asked
-// for in all of them.
+// Request pattern: over so many frames every pixel has requested faces once. The cache is complete
+// when all of them found nothing to trace.
 #define REQUEST_PATTERN 16u
 
 static void start_generation(struct voxel_volume *volume)
@@ -26,12 +26,12 @@ static void start_generation(struct voxel_volume *volume)
     light->start_pending = false;
     light->relight = true;
     light->unrequested_frames = 0;
-    // Change and peak are sums over a generation.
+    // Change and peak are accumulated over a generation.
     gpu_buffer_fill(volume->counters, COUNTER_CACHE_CHANGE * 4, 4, 0);
     gpu_buffer_fill(volume->counters, COUNTER_CACHE_PEAK * 4, 4, 0);
 }
 
-// Generations that make so many bounces: gathering pixels make the last one themselves.
+// Generations for the wanted bounces. Pixels that gather add the last bounce themselves.
 static uint32_t generations_needed(const struct voxel_light_params *params)
 {
     if (params->bounces == 0)
@@ -48,8 +48,8 @@ static double entry_budget(const struct voxel_volume *volume,
         return GPU_BUDGET;
     double entry_ms = volume->light.entry_ms > 0.0 ? volume->light.entry_ms : FIRST_ENTRY_MS;
     double budget = (params->camera_moved ? MOVING_TRACE_MS : REST_TRACE_MS) / entry_ms;
-    // The measured time holds what every frame pays, so that it must not be trusted to shrink
-    // budgets without end.
+    // The measured time includes fixed costs per frame, so a floor keeps it from shrinking budgets
+    // without end.
     return fmin(fmax(budget, params->camera_moved ? MIN_BUDGET : MIN_REST_BUDGET), MAX_BUDGET);
 }
 
@@ -63,7 +63,7 @@ static void plan_relight(struct voxel_volume *volume, const struct voxel_light_p
     work->relight_end = volume->cell_level_count;
     if (!light->relight)
         return;
-    // Voxels that have just come in are black: those cannot wait for their level's turn.
+    // New voxels are black and cannot wait for their level's turn.
     bool one = params->levels_per_frame == LEVELS_PER_FRAME_ONE && volume->cell_level_count > 1 &&
                !work->voxelize;
     if (one) {
@@ -101,8 +101,8 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->relight = true;
     }
     if (out_work->voxelize) {
-        // Where all that moved is a clip level, light that had settled need not do so again: only
-        // the voxels that came in are lit and traced.
+        // Only a clip level has moved and light had converged: light and trace the new voxels
+        // alone.
         if (light->converged && !light->relight)
             light->filling = true;
         light->relight = true;
@@ -115,16 +115,16 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->unrequested_frames = 0;
     }
     if (light->converged && !light->unlimited && light->bounce < light->needed) {
-        light->converged = false; // a view has come that shows one bounce more of the cache
+        light->converged = false; // a new view shows one more bounce of the cache
         light->start_pending = true;
     }
     if (light->bounce >= light->needed && light->needed == 0)
-        light->converged = true; // gathering pixels need no cache
+        light->converged = true; // pixels gather the only bounce: no cache needed
     if (!light->converged && light->start_pending && !(light->relight && light->next_level != 0))
         start_generation(volume);
     plan_relight(volume, params, out_work);
     out_work->trace = !light->converged && !(light->relight && light->next_level != 0);
-    // The first generation after an edit must not see old light where bounces are counted.
+    // With limited bounces the first generation after an edit must not see the former light.
     bool feeds = params->multi_bounce && (light->bounce > 0 || light->unlimited);
     volume->uniforms.cache_generation = light->generation;
     volume->uniforms.frame_number = volume->frame;
@@ -138,10 +138,10 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
                          const struct voxel_light_report *report, double trace_ms)
 {
     struct voxel_light_state *light = &volume->light;
-    // Faces without a record stay dark: make room, and voxelize anew.
+    // Faces without a record stay dark: enlarge the pool and voxelize again.
     if (report->overflow & OVERFLOW_FACES)
         volume->faces_full = true;
-    // Counted in faces to gather; budgets are in faces to march.
+    // Counted in look-ups; the budget counts marches.
     if (report->traced >= MIN_BUDGET * CACHE_MARCH_COST / 2 && trace_ms > 0.0)
         light->entry_ms = CACHE_MARCH_COST * trace_ms / report->traced;
     if (generation != light->generation || light->start_pending || light->converged ||
@@ -174,7 +174,7 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     light->start_pending = !light->converged;
     light->settled_once = light->settled_once || light->converged;
     light->version++;
-    // Cones that gather for pixels shall see the last bounce, too.
+    // Cones of gathering pixels must see the last bounce, too.
     light->relight = true;
 }
 

@@ -72,7 +72,7 @@ void voxel_boxes_add(struct voxel_boxes *boxes, struct voxel_box box)
             i++;
             continue;
         }
-        // The grown box may overlap others that the smaller one did not: start over.
+        // The merged box may overlap others that the smaller one did not: start over.
         box = bounds_of(&boxes->boxes[i], &box);
         boxes->boxes[i] = boxes->boxes[--boxes->count];
         i = 0;

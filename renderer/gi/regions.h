@@ -1,4 +1,4 @@
-// Boxes of voxels, and which of them must be filled anew when a level or an object moves. Pure.
+// Boxes of voxels, and which of them to refill when a level or an object moves. Pure functions.
 #ifndef VOXCAST_RENDERER_GI_REGIONS_H
 #define VOXCAST_RENDERER_GI_REGIONS_H
 
@@ -8,7 +8,7 @@
 #include "shared/voxel_records.h"
 #include "shared/voxel_work.h"
 
-// Voxels low <= v < high of one level.
+// Voxels of one level: low <= v < high.
 struct voxel_box {
     int32_t low[3];
     int32_t high[3];
@@ -24,13 +24,13 @@ bool voxel_box_is_empty(const struct voxel_box *box);
 struct voxel_box voxel_box_intersect(const struct voxel_box *a, const struct voxel_box *b);
 bool voxel_box_contains(const struct voxel_box *outer, const struct voxel_box *inner);
 
-// The parts of `now` that `before` does not cover, as up to three disjoint slabs; all of `now`
-// where they do not meet. Both are of equal size.
+// The part of `now` that `before` does not cover, as up to three disjoint slabs; all of `now` if
+// they do not overlap. Both have the same size.
 void voxel_boxes_entered(struct voxel_boxes *boxes, const struct voxel_box *before,
                          const struct voxel_box *now);
 
-// Adds a box, merging it with those that it overlaps into their common bounds; beyond the capacity
-// the last two are merged. `bounds` limits the result: a merged box never leaves it.
+// Adds a box and merges it with those it overlaps into common bounds. Beyond the capacity merges
+// the last two. `bounds` limits the result: a merged box never leaves it.
 void voxel_boxes_add(struct voxel_boxes *boxes, struct voxel_box box);
 
 #endif

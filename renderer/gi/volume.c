@@ -6,13 +6,13 @@
 
 #include "renderer/scene/scene.h"
 
-// A level's region moves in steps of so many voxels, so that those of the coarser level stay whole.
+// Levels move in steps of so many voxels, so that voxels of the coarser level are covered whole.
 #define SNAP_VOXELS 2
-// The coarsest level is larger than the scene by so many of its voxels. The third keeps surfaces of
-// the scene's bounds away from the faces of voxels, where they would fill both sides.
+// The coarsest level is larger than the scene by so many of its voxels. The third keeps surfaces at
+// the scene's bounds off voxel faces, where they would fill both sides.
 #define MARGIN_VOXELS 4.0
 #define ANCHOR_OFFSET (1.0 / 3.0)
-// Of the finest level along a typical object.
+// Voxels of the finest level along a typical object.
 #define TYPICAL_OBJECT_VOXELS 64.0f
 #define TILE_CAPACITY         65535u
 
@@ -52,7 +52,7 @@ static uint32_t face_capacity(const struct voxel_volume *volume)
 static bool create_pools(struct voxel_volume *volume)
 {
     size_t cells = volume->cell_capacity, surfels = volume->surfel_capacity;
-    // Bits that tell which voxels of the mip levels are occupied.
+    // Occupancy bits of the mip levels.
     size_t bits = 0;
     for (uint32_t i = volume->cell_level_count; i < volume->level_count; i++)
         bits += (size_t)1 << (3 * log2_of(volume->levels[i].edge));
@@ -73,8 +73,8 @@ static struct gpu_texture *create_texture(const struct voxel_volume *volume)
 {
     uint32_t outer = volume->params.edge + 2;
     uint32_t height = outer * volume->cell_level_count;
-    // Mip levels lie side by side: halves, quarters and so on down to 8 voxels, with their borders,
-    // are together no wider than the finest level.
+    // Mip levels lie side by side: halves, quarters and so on down to 8 voxels, with borders, are
+    // together no wider than the finest level.
     if (volume->level_count > volume->cell_level_count)
         height += outer / 2 + 1;
     uint32_t width = volume->face_count * outer;
@@ -182,7 +182,7 @@ uint32_t voxel_volume_choose_clip_levels(const struct voxel_volume_params *param
     return (uint32_t)fminf(fmaxf(levels, 1.0f), (float)maximum);
 }
 
-// Where the levels lie, from the scene's bounds; allocates what depends on their number.
+// Lays out the levels over the scene's bounds; allocates what depends on their number.
 static bool lay_out(struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
     bool clipmap = volume->params.method == GI_METHOD_CLIPMAP;
@@ -197,13 +197,13 @@ static bool lay_out(struct voxel_volume *volume, const struct gpu_scene *gpu_sce
     uint32_t cell_level_count =
         clipmap ? voxel_volume_choose_clip_levels(&volume->params, gpu_scene) : 1;
     bool same = volume->radiance && cell_level_count == volume->cell_level_count;
-    // A single level has mips down to 8^3; several are each other's.
+    // A single level has mips down to 8^3. Of several, each is the mip of the finer one.
     uint32_t levels = cell_level_count > 1 ? cell_level_count : 1 + log2_of(edge) - 3;
     volume->level_count = levels;
     volume->cell_level_count = cell_level_count;
     uint32_t doublings = cell_level_count - 1;
     double coarse = extent / ((double)edge - MARGIN_VOXELS);
-    // Exact powers of two apart, and exact as floats, so that shaders see the same voxels.
+    // Exact powers of two apart and exact as floats, so that shaders compute the same voxels.
     double fine = (double)(float)ldexp(coarse, -(int)doublings);
     for (uint32_t i = 0; i < levels; i++) {
         volume->levels[i].edge = i < cell_level_count ? edge : edge >> (i - doublings);
@@ -228,7 +228,7 @@ static bool covers_scene(const struct voxel_volume *volume, const struct gpu_sce
 {
     float old_size = 0.0f, size = 0.0f;
     for (int axis = 0; axis < 3; axis++) {
-        // Less than the margin, of which the anchor's offset takes a third of a voxel.
+        // Less than the margin, of which the anchor's offset uses a third of a voxel.
         float slack = 1.5f * (float)volume->levels[volume->cell_level_count - 1].voxel_edge_m;
         float low = gpu_scene->bounds_min[axis], high = gpu_scene->bounds_max[axis];
         if (low < volume->bounds_min[axis] - slack || high > volume->bounds_max[axis] + slack)
@@ -236,18 +236,18 @@ static bool covers_scene(const struct voxel_volume *volume, const struct gpu_sce
         old_size = fmaxf(old_size, volume->bounds_max[axis] - volume->bounds_min[axis]);
         size = fmaxf(size, high - low);
     }
-    // A scene that has shrunk deserves finer voxels.
+    // A scene that has shrunk gets finer voxels.
     return !(size < 0.5f * old_size);
 }
 
-// The region of a clip level: around the camera, but no further out than the scene reaches.
+// Region of a clip level: around the camera, clamped to the scene.
 static void position_level(const struct voxel_volume *volume, uint32_t number, const float eye[3],
                            struct voxel_box *out_box)
 {
     const struct voxel_level *level = &volume->levels[number];
     int32_t edge = (int32_t)level->edge;
     for (int axis = 0; axis < 3; axis++) {
-        if (number >= volume->cell_level_count) { // a mip of the level before
+        if (number >= volume->cell_level_count) { // mip of the level before
             out_box->low[axis] = volume->levels[number - 1].box.low[axis] / 2;
             out_box->high[axis] = out_box->low[axis] + edge;
             continue;
@@ -260,7 +260,7 @@ static void position_level(const struct voxel_volume *volume, uint32_t number, c
         center = fmin(fmax(center, low), high);
         double voxel = (center - volume->anchor[axis]) / level->voxel_edge_m;
         int32_t snapped = SNAP_VOXELS * (int32_t)floor(voxel / SNAP_VOXELS + 0.5);
-        // The coarsest level covers the scene and stays where it is.
+        // The coarsest level covers the scene and does not move.
         if (number + 1 == volume->cell_level_count)
             snapped = 0;
         out_box->low[axis] = snapped - edge / 2;
@@ -268,7 +268,7 @@ static void position_level(const struct voxel_volume *volume, uint32_t number, c
     }
 }
 
-// Places every level, and marks what has come into its region.
+// Moves every level and marks the voxels newly covered by it.
 static void move_levels(struct voxel_volume *volume, const float eye[3])
 {
     for (uint32_t i = 0; i < volume->level_count; i++) {
@@ -295,7 +295,7 @@ static struct voxel_box box_of_bounds(const struct voxel_volume *volume,
 {
     struct voxel_box box;
     for (int axis = 0; axis < 3; axis++) {
-        // A little wider than rounding could take a triangle.
+        // Padded by more than rounding can move a triangle.
         double from = (low[axis] - volume->anchor[axis]) / level->voxel_edge_m - 1.01;
         double to = (high[axis] - volume->anchor[axis]) / level->voxel_edge_m + 1.01;
         box.low[axis] = (int32_t)floor(fmin(fmax(from, -1e9), 1e9));
@@ -323,8 +323,8 @@ static void remember_instance(struct voxel_instance *seen,
     seen->visible = instance->visible;
 }
 
-// Marks where moved, shown and hidden objects were and are. `kept`: per level what was covered
-// before and still is; the rest is marked already.
+// Marks the former and present bounds of moved, shown and hidden objects. `kept`: per level the
+// region that was covered before and still is; the rest is already marked.
 static void mark_moved_instances(struct voxel_volume *volume, const struct gpu_scene *gpu_scene,
                                  const struct voxel_box kept[])
 {
@@ -364,8 +364,8 @@ static struct gpu_buffer *enlarge(struct voxel_volume *volume, struct gpu_buffer
     return larger;
 }
 
-// A cell has up to six faces, most have fewer than two. Once light has settled, those that have
-// records keep them and lighting makes the missing ones; before, all start over, so that the result
+// A cell has up to six faces, most have fewer than two. Once light has converged, existing records
+// stay and injection allocates the missing ones. Before that all start over, so that the result
 // does not depend on what had been traced.
 static bool make_room_for_faces(struct voxel_volume *volume)
 {
@@ -393,7 +393,7 @@ static bool make_room_for_faces(struct voxel_volume *volume)
     return volume->faces && volume->free_list;
 }
 
-// After memory has ended: what is there in part goes, so that the next frame starts anew.
+// After a failed allocation: frees the rest, so that the next frame starts over.
 static void give_up_storage(struct voxel_volume *volume)
 {
     destroy_storage(volume);
@@ -423,7 +423,7 @@ static bool update(struct voxel_volume *volume, const struct gpu_scene *gpu_scen
     } else if (transforms) {
         mark_moved_instances(volume, gpu_scene, kept);
     }
-    // Hits of cones outlive a camera's motion, but not geometry's.
+    // Cone hits stay valid when the camera moves, but not when geometry does.
     if (volume->everything || transforms)
         volume->epoch = (volume->epoch + 1) & 0xffu;
     volume->geometry_seen = now->geometry;
@@ -459,7 +459,7 @@ enum voxel_room voxel_volume_check_room(struct voxel_volume *volume)
         grow_if_full(&volume->cell_capacity, counters[COUNTER_CELLS]);
         grow_if_full(&volume->surfel_capacity, counters[COUNTER_SURFELS]);
     }
-    // From one and a half a cell to six, beyond which none has.
+    // Grows from 1.5 records per cell to 6, the maximum.
     if (counters[COUNTER_OVERFLOW] & OVERFLOW_FACES && volume->face_growth < 2)
         volume->face_growth++;
     volume->everything = true;
@@ -521,8 +521,8 @@ void voxel_volume_bind(struct voxel_volume *volume)
     block->face_record_words = face_words(volume);
     block->face_capacity = volume->face_capacity;
     block->geometry_epoch = volume->epoch;
-    // No cone blurs over more than a voxel of the coarsest level: wider ones take what is before an
-    // opening or behind a corner for part of it, and see both sides of thin slanted walls.
+    // Limits cone footprints to a voxel of the coarsest level. Wider cones blend in what lies
+    // before an opening or behind a corner, and see both sides of thin slanted walls.
     block->cone_max_diameter_m = (float)volume->levels[volume->cell_level_count - 1].voxel_edge_m;
     block->list_capacity = volume->cell_capacity;
     block->instance_count = volume->instance_count;

@@ -1,5 +1,4 @@
-// What voxelization has to work through: regions of voxels, the triangles near them, and the table
-// of surfaces.
+// Work lists of voxelization: regions of voxels, the triangles near them, and the surface table.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +6,8 @@
 #include "renderer/gi/volume.h"
 #include "renderer/scene/scene.h"
 
-// Up to so many instances each has surfels of its own; beyond, those of equal material share them,
-// so that no voxel's list grows without bound.
+// Up to this number of instances each has its own surfels. Beyond, instances of equal material
+// share them, so that the surfel list of a voxel stays bounded.
 #define MAX_OWN_SURFACES 4096u
 
 static bool reserve(struct voxel_volume *volume, size_t words)
@@ -29,7 +28,7 @@ static bool box_meets(const struct voxel_volume *volume, const struct voxel_leve
     for (int axis = 0; axis < 3; axis++) {
         double from = (low[axis] - volume->anchor[axis]) / level->voxel_edge_m;
         double to = (high[axis] - volume->anchor[axis]) / level->voxel_edge_m;
-        // NaN meets nothing.
+        // NaN overlaps nothing.
         if (!(from <= box->high[axis] + 0.01 && to >= box->low[axis] - 0.01))
             return false;
     }
@@ -118,7 +117,7 @@ static uint64_t hash_words(const uint32_t *words, size_t count)
     return hash;
 }
 
-// For each instance its surface, then for each surface its material and flags.
+// Surface of each instance, then material and flags of each surface.
 static bool write_surfaces(struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
     uint32_t instances = gpu_scene->counts.instances;
