@@ -1,11 +1,11 @@
-// Pictures of what the renderer works with, in place of the scene as it looks.
+// Debug views: images of intermediate results instead of the shaded scene.
 #include <stdio.h>
 
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
-// Levels beyond are mips, which hold light and opacity alone.
+// Levels beyond are mips, which hold radiance and opacity only.
 static bool debug_level_has_cells(const struct frame *frame)
 {
     return frame_debug_level(frame) < frame->volume->cell_level_count;
@@ -35,7 +35,7 @@ const char *frame_blank_reason(const struct frame *frame)
     return "plain grey: without global illumination there are no voxels to show";
 }
 
-// The pass that makes the picture by itself, since the view is of its light alone; NULL for none.
+// The pass whose own output is this debug view; NULL for none.
 static const struct pass *drawing_pass(const struct frame *frame)
 {
     enum debug_view view = frame->params->debug_view;
@@ -55,7 +55,7 @@ static const char *debug_view_skip_reason(const struct frame *frame)
     return other && !other->skip_reason(frame) ? "the pass of this light draws it" : NULL;
 }
 
-// Each kind of view has a shader of its own, so that none pays for another's code.
+// A shader per kind of view, so that none carries another's code.
 static const struct gpu_program *program_of_view(const struct frame *frame, const struct pass *pass,
                                                  struct error *out_error)
 {

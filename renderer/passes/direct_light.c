@@ -1,4 +1,4 @@
-// Direct light of punctual lights and planar emitters.
+// Direct light from punctual and area lights.
 #include <stdio.h>
 
 #include "renderer/gi/gi.h"
@@ -17,7 +17,7 @@ static const char *direct_light_skip_reason(const struct frame *frame)
 
 static bool direct_light_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
-    // The first pass to write radiance starts from the emission.
+    // Whichever pass writes radiance first adds the emission.
     bool first = environment_pass.skip_reason(frame) != NULL;
     int added_to = frame->params->debug_view == DEBUG_VIEW_DIRECT ? ADDED_TO_NOTHING
                    : first                                        ? ADDED_TO_EMISSION

@@ -1,4 +1,4 @@
-// Emitted radiance alone, for scenes without light.
+// Emitted radiance only, for scenes without other light.
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

@@ -1,4 +1,5 @@
-// Environment as background and ambient light; the first pass to write radiance where it runs.
+// Environment as background and ambient light. Where it runs, it is the first pass to write
+// radiance.
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

@@ -1,4 +1,4 @@
-// Automatic exposure from the histogram of luminances.
+// Automatic exposure from a luminance histogram.
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

@@ -1,4 +1,4 @@
-// Turns visibility ids into surface attributes.
+// Turns visibility ids into the G-buffer.
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

@@ -1,4 +1,4 @@
-// Indirect diffuse light: from the irradiance cache, or from cones or rays at pixels.
+// Indirect diffuse light: from the irradiance cache, or by cones or rays at pixels.
 #include <stdio.h>
 
 #include "renderer/gi/gi.h"

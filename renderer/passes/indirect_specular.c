@@ -1,5 +1,5 @@
-// What glossy surfaces mirror: one cone a pixel, or for four alike, in the tiles that hold such
-// surfaces.
+// Indirect specular light in the tiles that need it: one cone per pixel, or per four similar
+// pixels.
 #include <stdio.h>
 
 #include "renderer/gi/gi.h"
@@ -16,7 +16,7 @@ static const char *indirect_specular_skip_reason(const struct frame *frame)
     return shown ? NULL : "the debug view shows none";
 }
 
-// Lists the tiles whose gloss is traced, by limits that cones and rays do not share.
+// Lists the tiles to trace. Cones and rays have different limits of roughness and reflectance.
 static bool list_tiles(const struct frame *frame, const struct pass *pass, struct error *out_error)
 {
     const struct gpu_program *list =
@@ -64,7 +64,7 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
     struct view *view = frame->view;
     bool runs_while_accumulating = frame->gather == GATHER_RAYS && frame->accumulate;
     bool tiles_known =
-        frame->accumulate_only && frame->accumulated_samples != 1; // from the first of the pictures
+        frame->accumulate_only && frame->accumulated_samples != 1; // from the first sample on
     gpu_bind_storage(frame->gpu, BIND_TILES, view->glossy_tiles);
     bool done = (frame->accumulate_only && !runs_while_accumulating) || tiles_known ||
                 list_tiles(frame, pass, out_error);

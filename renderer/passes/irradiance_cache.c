@@ -1,5 +1,4 @@
-// Traces the cones of voxel faces that pixels and voxels have asked for, as many as a frame may
-// take.
+// Traces the cones of requested voxel faces, within the frame's budget.
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
@@ -53,7 +52,7 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
     gpu_barrier(frame->gpu);
     gpu_dispatch_indirect(frame->gpu, march, volume->counters, COUNTER_MARCH * 4);
     gpu_barrier(frame->gpu);
-    // Averaging goes over all faces, so while the camera moves it is done now and then.
+    // Smoothing visits all faces, so while the camera moves it runs only every few frames.
     if (!frame->visibility_changed || volume->frame % MOVING_SMOOTH_FRAMES == 0)
         gpu_dispatch_indirect(frame->gpu, smooth, volume->counters, COUNTER_LISTS * 4);
     return true;

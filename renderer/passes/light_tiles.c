@@ -1,4 +1,4 @@
-// Finds which lights of limited range reach which tile of the screen.
+// Culls lights of limited range per screen tile.
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

@@ -1,6 +1,5 @@
-// What a pass is, and what it is given to run. The
-// executor (passes/executor.c) has their list and alone decides about order, timers, debug groups
-// and skipping.
+// What a pass is. The executor (passes/executor.c) owns the list of passes and alone decides order,
+// timers, debug groups and skipping.
 #ifndef VOXCAST_RENDERER_PASSES_PASS_H
 #define VOXCAST_RENDERER_PASSES_PASS_H
 
@@ -14,8 +13,8 @@ enum resource {
     RESOURCE_GBUFFER,
     RESOURCE_SHADOW_MAP,
     RESOURCE_VOXELS,         // index, cells, surfels and lists
-    RESOURCE_VOXEL_RADIANCE, // what cones walk through
-    RESOURCE_IRRADIANCE,     // the cache in cells
+    RESOURCE_VOXEL_RADIANCE, // texture that cones march through
+    RESOURCE_IRRADIANCE,     // the irradiance cache
     RESOURCE_LIGHT_MASKS,
     RESOURCE_RADIANCE,
     RESOURCE_FRAGMENTS,
@@ -33,27 +32,25 @@ struct resource_use {
     enum access access;
 };
 
-// Whether the picture is of light, which goes through exposure and tone curve; else it is displayed
-// as it is.
+// Whether the image is radiance and goes through exposure and tone curve, rather than shown as is.
 bool frame_shows_light(const struct frame *frame);
 
-// Why there is nothing that the debug view could show, so that the picture is plain grey; NULL if
-// there is.
+// Why the debug view has nothing to show, so that the image is plain grey; NULL if it has.
 const char *frame_blank_reason(const struct frame *frame);
 
 struct pass {
     const char *name;
-    uint32_t effects_used; // EFFECT_BITs that pick this pass's shader permutation
+    uint32_t effects_used; // EFFECT_BITs that select the shader permutation
     uint32_t use_count;
     struct resource_use uses[PASS_MAX_USES];
 
-    // NULL if the pass must run, else the reason in words why it need not.
+    // NULL if the pass must run, else why it can be skipped.
     const char *(*skip_reason)(const struct frame *frame);
 
-    bool shows_reference;         // runs where a reference's picture is shown, too
-    bool runs_while_accumulating; // runs in quiet frames, too
+    bool shows_reference;         // also runs when the image is a reference
+    bool runs_while_accumulating; // also runs in accumulate-only frames
 
-    // Binds, dispatches, returns; allocates nothing. False with a message if a shader fails.
+    // Binds and dispatches; allocates nothing. False with a message if a shader fails.
     bool (*run)(struct frame *frame, const struct pass *pass, struct error *out_error);
 };
 
@@ -66,39 +63,40 @@ extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, voxeliz
 #define PASS_COUNT 20
 extern const struct pass *const all_passes[PASS_COUNT];
 
-// Runs the passes that are needed, in order, timing each. False with a message if one fails.
+// Runs the needed passes in order and times each. False with a message if one fails.
 bool passes_execute(struct frame *frame, struct error *out_error);
 
-// Tells whether every resource is written before it is read, in the order of all_passes. On
-// failure names the pass and the resource.
+// Whether every resource is written before it is read, in the order of all_passes. On failure the
+// message names the pass and the resource.
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error);
 
-// The permutation of a shader for the frame's effects, with `extra` defines ("NAME 1\n" lines).
+// The shader's permutation for the frame's effects and `extra` defines ("NAME 1
+// " lines).
 const struct gpu_program *pass_program(const struct frame *frame, const struct pass *pass,
                                        const char *shader, const char *extra,
                                        struct error *out_error);
 
-// The same for shaders that touch voxels: adds how many directions a voxel has.
+// The same for shaders that access voxels: adds the number of directions per voxel.
 const struct gpu_program *voxel_program(const struct frame *frame, const struct pass *pass,
                                         const char *shader, const char *extra,
                                         struct error *out_error);
 
-// The same for shaders that trace rays against the triangles and shade what they meet.
+// The same for shaders that trace rays against the triangles and shade the hits.
 const struct gpu_program *hit_program(const struct frame *frame, const char *shader,
                                       struct error *out_error);
 
-// Averages over neighbours what rays from pixels have found, irradiance or what lobes mirror; not
-// in quiet frames.
+// Filters the accumulated samples spatially: irradiance, or the specular lobe. Does nothing in
+// accumulate-only frames.
 bool filter_accumulation(const struct frame *frame, bool specular, struct error *out_error);
 
-// Works out which cascades of the sun must be drawn; before the passes run.
+// Finds which of the sun's cascades to render. Call before the passes run.
 void shadow_map_fit_cascades(struct frame *frame);
 
-// Tells the shaders where the cascades lie in the map of the whole scene.
+// Writes where the cascades lie relative to the whole scene's shadow map.
 struct frame_block;
 void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *block);
 
-// Groups of GROUP_EDGE^2 over the rendered pixels.
+// Dispatches groups of GROUP_EDGE^2 over the rendered pixels.
 void pass_dispatch_pixels(const struct frame *frame, const struct gpu_program *program);
 
 #endif

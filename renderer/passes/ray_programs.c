@@ -1,4 +1,4 @@
-// What the passes that gather by rays share: programs that shade what rays meet, and the filter.
+// Shared by the passes that trace rays: programs that shade hits, and the filter.
 #include <stdio.h>
 
 #include "renderer/gi/gi.h"
@@ -6,7 +6,7 @@
 #include "renderer/passes/pass.h"
 #include "renderer/gpu_scene/gpu_scene.h"
 
-// Effects that what a ray meets is shaded by. Tiles of the screen mean nothing there.
+// Effects that shade hits. Light tiles are in screen space and do not apply to hits.
 static const struct pass shading_of_hits = {
     .effects_used = (SURFACE_EFFECTS | DIRECT_LIGHT_EFFECTS | EFFECT_BIT(EFFECT_ALPHA_MASK) |
                      EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS) |

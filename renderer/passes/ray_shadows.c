@@ -1,4 +1,5 @@
-// Shadows of lights that have a size, by rays from pixels; without them cones or the map tell.
+// Traced visibility of area and sphere lights at pixels. Without this pass, cones or the shadow map
+// give it.
 #include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"

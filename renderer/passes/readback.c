@@ -1,4 +1,4 @@
-// Copies the output, and the exposure behind it, into the ring of buffers that the host can read.
+// Copies the output and then the exposure into the readback ring.
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"

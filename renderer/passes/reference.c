@@ -1,4 +1,4 @@
-// The reference's newest picture, uploaded in place of all that the real-time passes would make.
+// Uploads the reference's newest image instead of running the real-time passes.
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

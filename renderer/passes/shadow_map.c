@@ -1,5 +1,5 @@
-// Renders the depth maps of lights whose view or casters changed, and the sun's cascades around the
-// camera when it has left their margin.
+// Renders shadow maps of lights whose view or casters have changed, and the sun's cascades when the
+// camera has left their margin.
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 // Each cascade is this much smaller than the next; the last is the map of the whole scene.
 #define CASCADE_RATIO 4.0f
-// A cascade is drawn again once the camera is this far from its centre, in half-edges.
+// A cascade is rendered again once the camera is this far from its centre, in half-edges.
 #define CASCADE_MARGIN 0.25f
 // Slope-scaled bias (glPolygonOffset) away from the light, reversed Z.
 #define BIAS_SLOPE    -2.5f
@@ -62,7 +62,7 @@ void shadow_map_fit_cascades(struct frame *frame)
     if (lost)
         memset(gpu_scene->shadow_stale, true, sizeof(gpu_scene->shadow_stale));
     gpu_scene->shadow_epoch_seen = epoch;
-    // Depth that is lost, such as because another view takes cascades, is drawn again where it was.
+    // Depth was lost, for example because another view took cascades: render it again in place.
     if (view->shadow_epoch_seen != epoch)
         memset(view->cascade_stale, true, sizeof(view->cascade_stale));
     if (view->shadow_revision_seen != gpu_scene->shadow_revision)
@@ -77,7 +77,7 @@ void shadow_map_fit_cascades(struct frame *frame)
                      view->cascades);
 }
 
-// Both are orthographic along the same axes, so that one is a scale and an offset of the other.
+// Both are orthographic along the same axes, so they differ by a scale and an offset.
 void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *block)
 {
     const struct view *view = frame->view;

@@ -1,4 +1,4 @@
-// Exposure, tone curve and transfer function into output pixels.
+// Exposure, tone curve and transfer function to output pixels.
 #include <stdio.h>
 
 #include "renderer/passes/pass.h"

@@ -1,4 +1,4 @@
-// Blended and transmissive layers, per pixel in order of depth.
+// Shades blended and transmissive layers per pixel in depth order.
 #include <stdio.h>
 #include <string.h>
 
@@ -43,7 +43,7 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
     gpu_end_raster(frame->gpu);
     gpu_barrier(frame->gpu);
     if (frame->params->debug_view == DEBUG_VIEW_TILE_CLASSES)
-        return true; // shows where there are layers, not what they look like
+        return true; // shows where layers are, not how they look
     static const uint32_t no_groups[4] = {0, 1, 1, 0};
     gpu_buffer_write(view->transparent_tiles, 0, sizeof(no_groups), no_groups);
     uint32_t tile_count = ((frame->width + GROUP_EDGE - 1) / GROUP_EDGE) *

@@ -1,4 +1,5 @@
-// Fills the mip levels of a grid, and the middle of each clip level, from the next finer level.
+// Filters each finer level into the mip levels of a grid, or into the middle of the next clip
+// level.
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"

@@ -1,4 +1,4 @@
-// Lights occupied voxels: direct light, emission, and what the irradiance cache holds.
+// Injects light into occupied voxels: direct light, emission, and the cache's bounce.
 #include <stdio.h>
 
 #include "renderer/gi/volume.h"
@@ -39,7 +39,7 @@ const struct pass voxel_relight_pass = {
                     EFFECT_BIT(EFFECT_AREA_LIGHTS) | EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) |
                     EFFECT_BIT(EFFECT_VOXEL_COLORS),
     .runs_while_accumulating = true,
-    // The cache of irradiance is read, too, as an earlier frame left it.
+    // Also reads the irradiance cache, as an earlier frame left it.
     .use_count = 3,
     .uses = {{RESOURCE_VOXELS, ACCESS_READ},
              {RESOURCE_SHADOW_MAP, ACCESS_READ},

@@ -1,9 +1,9 @@
-// Enters triangles into the voxels of regions that geometry or a clip level has come into.
+// Voxelizes the triangles of newly covered regions.
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
-// Groups along x of a dispatch of more groups than one dimension holds.
+// Groups along x where one dimension cannot hold all groups of a dispatch.
 #define ROW_GROUPS 4096u
 #define MAX_GROWTH 12
 // As in shaders/lib/voxel_work.glsl and shaders/voxel/voxel_lists.comp.
@@ -17,7 +17,7 @@ static const char *voxelize_skip_reason(const struct frame *frame)
     return frame->light_work.voxelize ? NULL : "geometry and clip levels unmoved";
 }
 
-// Groups of invocations that take `run` things each.
+// Work groups whose invocations process `run` items each.
 static uint32_t groups_of(uint32_t count, uint32_t run)
 {
     return (count + LINEAR_GROUP * run - 1) / (LINEAR_GROUP * run);
@@ -70,7 +70,7 @@ static void empty_regions(const struct frame *frame, const struct voxelize_progr
         gpu_texture_clear(volume->radiance);
         gpu_barrier(frame->gpu);
     } else {
-        // Lighting may have taken more face records than were free.
+        // Light injection may have taken more face records than were free.
         gpu_dispatch(frame->gpu, programs->repair, 1, 1, 1);
         gpu_barrier(frame->gpu);
         dispatch_rows(frame, programs->clear, groups_of(volume->region_voxels, REGION_RUN));
@@ -95,7 +95,7 @@ static void list_cells(const struct frame *frame, const struct voxelize_programs
     gpu_dispatch(frame->gpu, programs->repair, 1, 1, 1);
     gpu_barrier(frame->gpu);
     if (volume->dirty[volume->cell_level_count - 1].count == 0)
-        return; // mips of the coarsest level are as they were
+        return; // mips of the coarsest level have not changed
     size_t first = volume->list_words - volume->mip_words;
     gpu_buffer_fill(volume->lists, first * 4, volume->mip_words * 4, 0);
 }
