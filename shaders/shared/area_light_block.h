@@ -1,4 +1,4 @@
-// A planar emitter, for C and GLSL.
+// A planar emitter, in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_AREA_LIGHT_BLOCK_H
 #define VOXCAST_SHADERS_SHARED_AREA_LIGHT_BLOCK_H
 
@@ -6,13 +6,13 @@
 
 #define MAX_AREA_LIGHTS 16
 
-// Of up to four corners, counter-clockwise as seen from its lit side.
+// Up to four corners, counter-clockwise seen from the lit side.
 struct area_light_block {
     vec4 corners[4]; // world; the fourth component is unused
     vec3 radiance;   // cd/m^2
     float area_m2;
     vec3 center;
-    uint in_voxels; // 1 if voxels hold its light better, where there are any
+    uint in_voxels; // 1: lit from voxels instead, if there are any
     vec3 normal;    // unit
     uint two_sided; // 1 if both sides emit
     BLOCK_STRUCT(light_shadow) shadow;

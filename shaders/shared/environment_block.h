@@ -1,10 +1,10 @@
-// The environment, unrotated and of intensity 1, for C and GLSL; std430.
+// The environment, unrotated and at intensity 1, in C and GLSL; std430.
 #ifndef VOXCAST_SHADERS_SHARED_ENVIRONMENT_BLOCK_H
 #define VOXCAST_SHADERS_SHARED_ENVIRONMENT_BLOCK_H
 
 #include "shared/types.h"
 
-#define ENVIRONMENT_BRDF_EDGE 16 // nodes of its table in roughness and in sqrt(n.v)
+#define ENVIRONMENT_BRDF_EDGE 16 // table nodes in roughness and in sqrt(n.v)
 
 #define ENVIRONMENT_SH_COEFFICIENTS 9
 
@@ -12,18 +12,18 @@ struct environment_block {
     // Spherical harmonics of the irradiance divided by pi (Ramamoorthi and Hanrahan 2001), bands
     // 0 to 2; the fourth component is unused.
     vec4 irradiance_sh[ENVIRONMENT_SH_COEFFICIENTS];
-    uint equirectangular; // 1 if its picture is a texture
-    float level_count;    // of the texture that is filtered by roughness
+    uint equirectangular; // 1: an equirectangular texture
+    float level_count;    // of the texture prefiltered by roughness
     uint unused_1;
     uint unused_2;
-    vec3 zenith; // colours of what is none
+    vec3 zenith; // gradient colours; unused with a texture
     float unused_3;
     vec3 horizon;
     float unused_4;
     vec3 ground;
     float unused_5;
-    // Directional albedo of the GGX lobe as scale and bias of F0: a row for each roughness, in it
-    // xy at a node of sqrt(n.v) and zw at the next.
+    // Directional albedo of the GGX lobe as scale and bias of F0: a row per roughness; xy at a node
+    // of sqrt(n.v), zw at the next.
     vec4 brdf_nodes[ENVIRONMENT_BRDF_EDGE * ENVIRONMENT_BRDF_EDGE];
 };
 

@@ -1,4 +1,4 @@
-// A placed primitive, which is one draw, for C and GLSL.
+// A placed primitive (one draw), in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_INSTANCE_BLOCK_H
 #define VOXCAST_SHADERS_SHARED_INSTANCE_BLOCK_H
 

@@ -1,4 +1,4 @@
-// A punctual light (KHR_lights_punctual), for C and GLSL.
+// A punctual light (KHR_lights_punctual), in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_LIGHT_BLOCK_H
 #define VOXCAST_SHADERS_SHARED_LIGHT_BLOCK_H
 
@@ -11,11 +11,11 @@
 struct light_block {
     vec3 position; // world
     uint type;
-    vec3 direction;   // unit, along the light that travels
-    float range_m;    // 0 unlimited
-    vec3 intensity;   // colour times intensity: cd or lux
-    float radius_m;   // of the source
-    float cone_scale; // of the cosine
+    vec3 direction;   // unit, along the light's rays
+    float range_m;    // 0: unlimited
+    vec3 intensity;   // colour times intensity, in cd or lux
+    float radius_m;   // of the emitting sphere
+    float cone_scale; // of the spot's cosine
     float cone_offset;
     float cos_outer_cone;
     float unused;

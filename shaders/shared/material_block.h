@@ -1,4 +1,4 @@
-// A material, for C and GLSL.
+// A material, in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_MATERIAL_BLOCK_H
 #define VOXCAST_SHADERS_SHARED_MATERIAL_BLOCK_H
 
@@ -10,7 +10,7 @@
 #define MATERIAL_ALPHA_MASK   8u
 #define MATERIAL_ALPHA_BLEND  16u
 #define MATERIAL_DOUBLE_SIDED 32u
-#define MATERIAL_IOR_ONE      64u // no dielectric reflection at any angle
+#define MATERIAL_IOR_ONE      64u // IOR 1: no dielectric reflection at any angle
 
 #define TEXTURE_SLOTS              8
 #define TEXTURE_BASE_COLOR         0u
@@ -32,21 +32,21 @@ struct material_block {
     float roughness;
     float normal_scale;
     float occlusion_strength;
-    float f0; // head-on reflectance that follows from the index of refraction
+    float f0; // reflectance at normal incidence, from the IOR
     float specular;
     float transmission;
     float thickness_m;
     vec3 specular_color;
-    float attenuation_distance_m; // 0 none
+    float attenuation_distance_m; // 0: none
     vec3 attenuation_color;
     float ior;
-    float mean_metallic; // with the mean of its texture
+    float mean_metallic; // including its texture's mean
     float mean_roughness;
     float unused_0;
     float unused_1;
     uint flags;
     uint first_texture;
-    uint texture_mask; // a bit for each slot in use
+    uint texture_mask; // a bit per slot in use
     uint unused_2;
 };
 

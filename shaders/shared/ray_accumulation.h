@@ -1,10 +1,10 @@
-// Layout of the sums of what rays from pixels find, for C and GLSL.
+// Layout of the ray samples' accumulation, in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_RAY_ACCUMULATION_H
 #define VOXCAST_SHADERS_SHARED_RAY_ACCUMULATION_H
 
-// Pictures of what rays from pixels have found, 4 floats a pixel: sums of irradiance / pi / scale
-// and ambient visibility; their means; sums of what lobes mirror, in cd/m^2 times the share that is
-// reflected, and of those shares; their quotients. The latter two only where there is gloss.
+// Accumulation planes, 4 floats per pixel: sums of irradiance / pi / scale and ambient visibility;
+// filtered means of these; sums of specular radiance in cd/m^2 times sample weight, and of the
+// weights; their quotients, filtered. The latter two only with specular lobes.
 #define PLANE_DIFFUSE           0
 #define PLANE_DIFFUSE_MEAN      1
 #define PLANE_SPECULAR          2

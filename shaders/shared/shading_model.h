@@ -1,4 +1,4 @@
-// How a surface is shaded, for C and GLSL.
+// Shading models, in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_SHADING_MODEL_H
 #define VOXCAST_SHADERS_SHARED_SHADING_MODEL_H
 

@@ -1,4 +1,4 @@
-// Binding numbers of buffers, images and textures, for C and GLSL.
+// Binding points of buffers, images and textures, in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_SLOTS_H
 #define VOXCAST_SHADERS_SHARED_SLOTS_H
 
@@ -36,7 +36,7 @@
 #define BIND_CACHE_QUEUE    26
 #define BIND_INDIRECT       27
 #define BIND_FACES          28
-#define BIND_CHECK          29 // of shaders/debug/finite_check.comp alone, likewise the next
+#define BIND_CHECK          29 // this and the next: shaders/debug/finite_check.comp only
 #define BIND_CHECKED        30
 #define STORAGE_BINDINGS    31
 

@@ -1,4 +1,4 @@
-// A texture of a material, for C and GLSL.
+// A texture of a material, in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_TEXTURE_BLOCK_H
 #define VOXCAST_SHADERS_SHARED_TEXTURE_BLOCK_H
 

@@ -1,6 +1,6 @@
-// Lets C and GLSL read the same block structs. Members are mat4, vec4, scalars, uvec2, or a vec3 or
-// ivec3 with a scalar behind it, in groups of 16 bytes, so that std140, std430 and C agree on every
-// offset; a test compares them with the driver's.
+// Lets C and GLSL share block structs. Members are mat4, vec4, scalars, uvec2, or a vec3 or ivec3
+// followed by a scalar, in groups of 16 bytes: std140, std430 and C then agree on every offset. A
+// test compares the offsets with the driver's.
 #ifndef VOXCAST_SHADERS_SHARED_TYPES_H
 #define VOXCAST_SHADERS_SHARED_TYPES_H
 

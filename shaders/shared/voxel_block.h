@@ -1,4 +1,4 @@
-// A volume of voxels, for C and GLSL; std140.
+// A voxel volume, in C and GLSL; std140.
 #ifndef VOXCAST_SHADERS_SHARED_VOXEL_BLOCK_H
 #define VOXCAST_SHADERS_SHARED_VOXEL_BLOCK_H
 
@@ -8,33 +8,33 @@
 #define VOXEL_MAX_CONES  32
 #define VOXEL_FACES      6
 
-// Optical depth across a voxel that is covered all over: what leaks through is e^-8, 0.03 %.
+// Optical depth of a fully covered voxel: transmits e^-8, 0.03 %.
 #define VOXEL_MAX_DEPTH 8.0
 
-// Triangles that span more columns of voxels are cut into tiles of so many columns.
+// Triangles that span more voxel columns are split into tiles of so many columns.
 #define VOXEL_SMALL_COLUMNS 12
 #define VOXEL_TILE_EDGE     8
 #define VOXEL_MAX_REGIONS   96
-#define VOXEL_BATCH         64 // triangles
+#define VOXEL_BATCH         64 // triangles per batch
 
 struct voxel_level_block {
     ivec3 origin;       // lowest voxel, in voxels of this level from the anchor
     int edge;           // voxels along an edge
-    ivec3 inner_origin; // lowest voxel that the finer level fills
-    int inner_edge;     // how many along an edge, 0 none
-    ivec3 texel_origin; // first texel of face 0 behind the border
-    int face_stride;    // texels from face to face
+    ivec3 inner_origin; // lowest voxel filled from the finer level
+    int inner_edge;     // voxels along an edge; 0: none
+    ivec3 texel_origin; // first texel of face 0 inside the border
+    int face_stride;    // texels between faces
     uint first_index;   // first word in the index
     uint edge_log2;
-    uint wraps; // 1 if addresses are toroidal
-    uint dirty; // 1 if any region is to be voxelized
+    uint wraps; // 1: toroidal addresses
+    uint dirty; // 1: some region must be voxelized
     float voxel_edge_m;
     float inverse_voxel_edge; // 1/m
     float unused_0;
     float unused_1;
 };
 
-// How a set of cones is traced.
+// How to march a cone set.
 struct cone_march {
     float step_diameters;
     float start_voxels;
@@ -49,35 +49,35 @@ struct voxel_cone {
 
 struct voxel_block {
     vec3 anchor;          // world
-    float radiance_scale; // radiance is stored divided by it
+    float radiance_scale; // stored radiance is divided by it
     uint level_count;
-    uint face_count; // in the texture
+    uint face_count; // faces per voxel in the texture
     uint cell_capacity;
     uint surfel_capacity;
-    uint region_count; // to voxelize
+    uint region_count; // regions to voxelize
     uint region_voxel_count;
-    uint batch_count; // of triangles
+    uint batch_count; // batches of triangles
     uint tile_capacity;
     uint cache_generation;
     uint frame_number;
-    uint trace_budget; // entries of the cache
-    uint all_faces;    // 1: faces that no pixel has requested are traced, too
+    uint trace_budget; // cache entries per frame
+    uint all_faces;    // 1: trace faces that no pixel has requested, too
     float ao_radius_m; // reach of ambient occlusion
     float indirect_intensity;
-    float specular_max_roughness; // rougher surfaces take the cache's light
+    float specular_max_roughness; // rougher surfaces use the cache
     float cone_max_diameter_m;
-    float peak_radiance;            // brightest light of the former generation / scale
-    float sample_count;             // in the accumulation
-    float specular_min_reflectance; // surfaces that reflect less take the cache's light
+    float peak_radiance;            // of the last generation's brightest face / scale
+    float sample_count;             // samples in the accumulation
+    float specular_min_reflectance; // surfaces of lower reflectance use the cache
     float unused;
     BLOCK_STRUCT(cone_march) cache_march;
     BLOCK_STRUCT(cone_march) pixel_march;
-    uint cell_level_count; // levels with cells of their own; those beyond are mips of the last
+    uint cell_level_count; // levels with cells of their own; the rest are mips of the last
     uint face_record_words;
-    uint face_capacity; // records
+    uint face_capacity; // in face records
     uint geometry_epoch;
     uint list_capacity;
-    uint first_level; // to light, or the one to filter
+    uint first_level; // first level to inject into, or the level to filter
     uint end_level;
     uint instance_count;
     BLOCK_STRUCT(voxel_cone) cache_cones[VOXEL_MAX_CONES];

@@ -1,15 +1,15 @@
-// What voxelization works through, for C and GLSL; std430.
+// Work lists of voxelization, in C and GLSL; std430.
 #ifndef VOXCAST_SHADERS_SHARED_VOXEL_WORK_H
 #define VOXCAST_SHADERS_SHARED_VOXEL_WORK_H
 
 #include "shared/voxel_block.h"
 
-// Voxels of a level to fill anew.
+// Voxels of a level to refill.
 struct voxel_region {
     ivec3 low;
     uint level;
     ivec3 size;
-    uint first_voxel; // its number among those of all regions
+    uint first_voxel; // its number over all regions
 };
 
 // Up to VOXEL_BATCH triangles of an instance, for one region.

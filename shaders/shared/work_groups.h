@@ -1,4 +1,4 @@
-// Sizes of work groups and what follows from them, for C and GLSL.
+// Work-group sizes and what follows from them, in C and GLSL.
 #ifndef VOXCAST_SHADERS_SHARED_WORK_GROUPS_H
 #define VOXCAST_SHADERS_SHARED_WORK_GROUPS_H
 
