@@ -1,13 +1,13 @@
-// Averages what rays from pixels have found over the neighbours that lie on the same surface. In:
-// G-buffer, sums. Out: means. SPECULAR_LOBE 0: irradiance; 1: what lobes mirror, where smooth
-// surfaces keep their own.
+// Filters accumulated ray samples spatially over neighbours on the same surface. In: G-buffer,
+// sums. Out: means. SPECULAR_LOBE 0: irradiance; 1: specular radiance, which smooth surfaces keep
+// unfiltered.
 #include "lib/gbuffer.glsl"
 #include "lib/ray_accumulation.glsl"
 #include "lib/specular_classify.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-// From the first roughness on neighbours mirror something else, from the second about the same.
+// Below the first roughness neighbours reflect different things, above the second about the same.
 const vec2 FILTERED_ROUGHNESS = vec2(0.1, 0.4);
 
 void main()

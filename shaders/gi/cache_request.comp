@@ -1,5 +1,5 @@
-// Pixels ask for the voxel faces they see: one pixel of each REQUEST_EDGE^2, another each frame.
-// In: G-buffer, cells. Out: the faces' newest request.
+// Pixels request the voxel faces that they show: one pixel of each REQUEST_EDGE^2, a different one
+// each frame. In: G-buffer, cells. Out: newest request of the faces.
 #include "lib/gbuffer.glsl"
 #include "lib/cache_request.glsl"
 

@@ -1,10 +1,9 @@
-// Chooses which cached irradiances to trace next. In: lists of lit cells, cells. Out: queue of cell
-// faces by class of urgency.
+// Selects which face records to trace next. In: list of lit cells, cells. Out: queue of face
+// records by class of urgency.
 //
-// SELECT_FACES: faces whose cones have not been traced through the geometry as it is, and faces
-// whose light is not of this generation; those that pixels have asked for first, among them the new
-// before those that changed much before the rest. SELECT_ARGUMENTS: arguments of the passes over
-// them.
+// STAGE 0: queues faces to march (cones not traced through the present geometry) and faces to look
+// up (light of an older generation). Requested faces come first; among those to march new ones
+// lead, among those to look up ones that changed much. STAGE 1: dispatch arguments.
 #define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 
@@ -25,7 +24,7 @@ layout(std430, binding = BIND_CACHE_QUEUE) buffer queue_storage
     uint queue[]; // CACHE_CLASSES runs of first words of face records
 };
 
-// Requests older than this many frames are out of sight.
+// Requests older than this many frames are out of view.
 const uint REQUEST_FRAMES = 24u;
 const uint LARGE_CHANGE = 2u; // of 63
 
@@ -86,8 +85,8 @@ void main()
 {
     if (gl_GlobalInvocationID.x != 0u)
         return;
-    // The budget is in faces to march. Looking up hits is cheap and shows an edit everywhere, so it
-    // has the first claim, but for a quarter.
+    // The budget counts marches. Look-ups are cheap and show an edit everywhere, so they go first,
+    // but leave a quarter of the budget.
     uint to_march = count_classes(0u, CACHE_MARCH_CLASSES, voxels.list_capacity);
     uint to_look_up = count_classes(CACHE_MARCH_CLASSES, CACHE_CLASSES, voxels.list_capacity);
     uint budget = voxels.trace_budget;
@@ -95,7 +94,7 @@ void main()
     uint marched = min(to_march, budget - looked_up / CACHE_MARCH_COST);
     set_arguments(COUNTER_MARCH, marched);
     set_arguments(COUNTER_LOOKUP, looked_up);
-    // Those that the queue had no room for are left, too.
+    // Faces that did not fit into the queue are left, too.
     counters[COUNTER_CACHE_LEFT] =
         count_classes(0u, CACHE_CLASSES, 0xffffffffu) - marched - looked_up;
     counters[COUNTER_CACHE_TRACED] = marched * CACHE_MARCH_COST + looked_up;

@@ -1,6 +1,6 @@
-// Averages each voxel face's light with its neighbours' in the face's plane, with weights 1 2 1:
-// the cones of neighbours are turned against each other in a pattern that repeats after two voxels,
-// which these weights cancel. In: list of lit cells, face records. Out: the light that pixels see.
+// Averages each voxel face's irradiance with its neighbours in the face's plane, with weights 1 2
+// 1. The cones of neighbours are rotated in a pattern of period two voxels, which these weights
+// cancel. In: list of lit cells, face records. Out: the irradiance that pixels read.
 #include "lib/voxel_cells.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
@@ -48,7 +48,7 @@ void main()
             weight += fraction;
         }
         sum /= weight;
-        sum.a = max(sum.a, 0.001); // 0 says that nothing is known
+        sum.a = max(sum.a, 0.001); // 0 means unknown
         faces[words + FACE_SHOWN] = packHalf2x16(sum.xy);
         faces[words + FACE_SHOWN + 1u] = packHalf2x16(sum.zw);
     }

@@ -1,7 +1,8 @@
-// Finds the light of the chosen voxel faces. In: queue, face records, radiance texture. Out: the
-// faces' irradiance and how much it changed.
+// Updates the irradiance of the selected voxel faces. In: queue, face records, radiance texture.
+// Out: the faces' irradiance and its change.
 //
-// MARCH 1: traces their cones, and keeps where each hits. MARCH 0: looks the light up at the hits.
+// MARCH 1: traces their cones and stores where each hits. MARCH 0: reads the radiance at the stored
+// hits.
 #define CONE_SMOOTH 0
 #include "lib/voxel_cells.glsl"
 #include "lib/cone_hemisphere.glsl"
@@ -20,7 +21,7 @@ layout(std430, binding = BIND_CACHE_QUEUE) readonly buffer queue_storage
     uint queue[];
 };
 
-// The queue's entry of an invocation, class by class; VOXEL_NONE beyond the last.
+// Queue entry of an invocation, class by class; VOXEL_NONE past the end.
 uint find_entry(uint number)
 {
 #if MARCH
@@ -62,7 +63,7 @@ void main()
     vec3 sub_voxel_position =
         vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0;
     vec3 position = (corner + sub_voxel_position) * voxels.levels[level].voxel_edge_m;
-    // Neighbours look in different directions, so that interpolation between them averages more.
+    // Rotates the cones of neighbours differently, so that interpolation averages more directions.
     ivec3 odd = ivec3(corner) & 1;
     float angle = float(odd.x + 2 * odd.y + 4 * odd.z) * (PI / 4.0);
     hemisphere g =
@@ -76,8 +77,8 @@ void main()
         uint hit;
         add_cone(g, i, along, hit);
         faces[words + FACE_WORDS + i] = hit;
-        // What counts is the light at the hit, as it is for faces that are not marched anew: so the
-        // result does not depend on which frame a face was marched in.
+        // Reads radiance at the hit, as MARCH 0 does: the result then does not depend on the frame
+        // in which a face was marched.
         add_cone_at_hit(g, i, hit, found);
 #else
         add_cone_at_hit(g, i, faces[words + FACE_WORDS + i], found);
@@ -92,7 +93,7 @@ void main()
     vec3 light = clamp_to_half(found.light);
     faces[words + FACE_LIGHT] = packHalf2x16(light.rg);
     faces[words + FACE_LIGHT + 1u] = packHalf2x16(vec2(light.b, found.ambient_visibility));
-    // Until neighbours are averaged, what is new shows itself.
+    // New faces show their own light until they are smoothed.
     if ((state & FACE_MARCHED) == 0u) {
         faces[words + FACE_SHOWN] = faces[words + FACE_LIGHT];
         faces[words + FACE_SHOWN + 1u] =
@@ -102,7 +103,7 @@ void main()
     faces[words + FACE_STATE] = voxels.cache_generation |
                                 (relative_change(before, light) << FACE_CHANGE_BIT) | FACE_VALID |
                                 FACE_MARCHED | (epoch << FACE_EPOCH_BIT);
-    // What is darker than a hundredth of the brightest must not keep the whole from being done.
+    // Relative to at least a hundredth of the peak, so that dark faces do not delay convergence.
     float change =
         luminance(abs(light - before)) / max(luminance(light) + 0.01 * voxels.peak_radiance, 1e-9);
     atomicMax(counters[COUNTER_CACHE_CHANGE], floatBitsToUint(change));

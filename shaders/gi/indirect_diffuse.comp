@@ -1,9 +1,9 @@
-// Adds indirect diffuse light, or writes it where it is shown ALONE. In: G-buffer; irradiance cache
-// (CACHED 1), or what pixels have gathered themselves, every one (GATHER_STEP 1) or every fourth
-// (2), as sums or as means of neighbours (FILTERED 1). Out: radiance in cd/m^2.
+// Adds indirect diffuse light, or writes it alone (ALONE, a debug view). In: G-buffer; the
+// irradiance cache (CACHED 1), or the accumulation of every pixel (GATHER_STEP 1) or of every
+// second in x and y (2), as sums or as filtered means (FILTERED 1). Out: radiance in cd/m^2.
 //
-// From the cache, an invocation takes 2x2 pixels: irradiance changes little between them, so that
-// it is looked up once and again only for pixels that lie on another surface.
+// From the cache, an invocation shades 2x2 pixels: irradiance varies little between them, so it is
+// looked up once and again only for pixels on another surface.
 #define CELLS_ACCESS readonly
 #include "lib/ray_accumulation.glsl"
 #include "lib/gbuffer.glsl"
@@ -14,7 +14,7 @@
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 #if CACHED
-// Two pixels share their irradiance if neither normals nor places differ by more.
+// Two pixels share irradiance if normals and positions differ by no more than this.
 const float SHARED_COSINE = 0.97;
 const float SHARED_VOXELS = 0.3;
 
@@ -47,7 +47,7 @@ void main()
     }
 }
 #else
-// What a pixel has gathered.
+// Mean of a pixel's samples.
 vec4 found_at(uvec2 texel)
 {
 #if FILTERED
@@ -58,8 +58,8 @@ vec4 found_at(uvec2 texel)
 }
 
 #if GATHER_STEP == 2
-// Joint bilateral upsampling (Kopf et al. 2007): the four gathered pixels around, by distance, and
-// by how much of the same surface they lie on.
+// Joint bilateral upsampling (Kopf et al. 2007): blends the four nearest gathered pixels by
+// distance and by similarity of surface.
 vec4 upsampled_light(surface s, uvec2 pixel)
 {
     vec2 at = vec2(pixel) * 0.5;

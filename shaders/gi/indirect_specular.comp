@@ -1,5 +1,5 @@
-// Adds what glossy surfaces mirror, by cones or (RAYS 1) as rays have found it, in the tiles that
-// hold any (one group each). In: tiles, G-buffer, radiance texture. Out: radiance in cd/m^2.
+// Adds indirect specular light in the tiles that need it (one group each), by cones or (RAYS 1)
+// from the accumulation. In: tiles, G-buffer, radiance texture. Out: radiance in cd/m^2.
 #define CONE_SMOOTH 1
 #define CONE_SKIP   1
 #include "lib/gbuffer.glsl"
@@ -13,7 +13,7 @@ layout(local_size_x = GROUP_EDGE / 2, local_size_y = GROUP_EDGE / 2) in;
 
 layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 {
-    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_count; // groups in x of the indirect dispatch; then y and z
     uint tile_groups_y;
     uint tile_groups_z;
     uint tile_unused;
@@ -21,8 +21,8 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 };
 
 #if RAYS
-#define SPECULAR_OCCLUSION 1.0 // rays know what is in the way
-// What rays have found for the square of pixels that shares them.
+#define SPECULAR_OCCLUSION 1.0 // rays trace occlusion themselves
+// Accumulated specular radiance of the square that the pixel belongs to.
 vec3 mirrored_light(surface s, uvec2 pixel)
 {
     return accumulated[accumulation_index(PLANE_SPECULAR_MEAN, pixel / uint(GATHER_STEP))].rgb;
@@ -32,14 +32,14 @@ vec3 mirrored_light(surface s, uvec2 pixel)
 vec3 mirrored_light(surface s, uvec2 pixel)
 {
     vec3 mirror = reflect(-s.view, s.normal);
-    // A normal map can turn the mirror ray into the surface.
+    // A normal map can turn the mirror direction into the surface.
     mirror += s.geometric_normal * max(0.01 - dot(mirror, s.geometric_normal), 0.0);
     return trace_specular(s.position, s.geometric_normal, s.thin, normalize(mirror), s.roughness);
 }
 #endif
 
-// An invocation takes 2x2 pixels; with SHARED 1 those of about the same normal and roughness take
-// what the first of them has traced.
+// An invocation shades 2x2 pixels. With SHARED 1 those of similar normal and roughness reuse the
+// cone of the first.
 void main()
 {
     uint tile = tiles[gl_WorkGroupID.x];

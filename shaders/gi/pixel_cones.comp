@@ -1,6 +1,6 @@
-// Gathers irradiance at pixels, at every one (GATHER_STEP 1) or at every fourth (2), by cones that
-// are turned from pixel to pixel and from frame to frame. In: G-buffer, radiance texture. Out: sums
-// over the frames in which nothing moved.
+// Gathers irradiance by cones at every pixel (GATHER_STEP 1) or every second in x and y (2). The
+// cones are rotated from pixel to pixel and from frame to frame. In: G-buffer, radiance texture.
+// Out: sums over the frames in which nothing moved.
 #define CONE_SMOOTH 1
 #define PIXEL_CONES 1
 #include "lib/ray_accumulation.glsl"
@@ -19,8 +19,8 @@ void main()
     bool first = voxels.sample_count <= 1.0;
     if (s.shading >= SHADE_UNLIT)
         return;
-    // Four turns in a square of 2x2 pixels that change places from frame to frame: after four
-    // frames every pixel has seen the same, and then the next four follow.
+    // Four rotations in a square of 2x2 pixels swap places from frame to frame: after four frames
+    // every pixel has used all of them, and the next four rotations follow.
     uint order = (texel.x & 1u) + 2u * (texel.y & 1u);
     float frame_number = voxels.sample_count - 1.0;
     float turn =

@@ -1,6 +1,6 @@
-// Gathers irradiance at pixels (every GATHER_STEP-th) by a ray a picture against the real geometry.
-// In: G-buffer, tree of triangles, materials, lights, shadow maps, irradiance. Out: sums over the
-// frames in which nothing moved.
+// Gathers irradiance at every GATHER_STEP-th pixel, one ray per frame against the triangles. In:
+// G-buffer, BVH, materials, lights, shadow maps, irradiance cache. Out: sums over the frames in
+// which nothing moved.
 #include "lib/ray_accumulation.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/hit_shading.glsl"
@@ -8,9 +8,9 @@
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-// Angle in radians that textures are averaged over where rays meet them.
+// Angle in radians over which textures are filtered at hits.
 const float RAY_SPREAD = 0.03;
-// Roughness of a lobe about as wide as a hemisphere's rays stand for.
+// Roughness of a lobe about as wide as the solid angle of one hemisphere ray.
 const float RAY_ROUGHNESS = 0.6;
 
 void main()

@@ -1,6 +1,6 @@
-// Which share of the light of lights that have a size arrives at pixels: by a ray a picture to a
-// place on each of them. Of every GATHER_STEP x GATHER_STEP pixels one has its turn. In: G-buffer,
-// tree of triangles, lights. Out: sums over the frames in which nothing moved.
+// Traces the visibility of area and sphere lights at pixels: per frame one ray to a point on each
+// light, from one pixel of each GATHER_STEP x GATHER_STEP in turn. In: G-buffer, BVH, lights. Out:
+// sums over the frames in which nothing moved.
 #include "lib/gbuffer.glsl"
 #include "lib/ray_accumulation.glsl"
 #include "lib/bvh.glsl"
@@ -9,13 +9,13 @@
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-// Rays end just before the light itself.
+// Rays end just before the light.
 const float REACH = 0.999;
-// From light to light numbers move on (Roberts 2018, as ray_sequence.glsl).
+// Step of the sequence from light to light (Roberts 2018, as ray_sequence.glsl).
 const vec3 NEXT_LIGHT = vec3(0.8191725, 0.6710436, 0.5497005);
 
 struct light_sum {
-    vec3 whole; // that would arrive if nothing stood between
+    vec3 whole; // unshadowed
     vec3 seen;
 };
 
@@ -31,8 +31,8 @@ void add_light(inout light_sum sum, surface s, vec3 light, vec3 texel, float cha
 }
 
 #if AREA_LIGHTS
-// A place on an emitter, so that each counts as what it sends to the surface: one of four, from
-// each quarter one (resampled importance sampling, Talbot et al. 2005).
+// Samples a point on an emitter by its contribution to the surface: one of four candidates, one per
+// quarter (resampled importance sampling, Talbot et al. 2005).
 vec3 point_on(area_light_block light, surface s, vec3 u)
 {
     vec3 points[4];
@@ -64,7 +64,7 @@ vec3 light_visibility(surface s, vec3 u)
         light_block light = lights[i];
         if (!has_size(light))
             continue;
-        // A ball seen as the disk that faces the surface.
+        // A sphere light, sampled as the disk that faces the surface.
         vec3 l;
         vec3 unshadowed = punctual_unshadowed(s, light, l);
         float angle = 2.0 * PI * u.y;

@@ -1,7 +1,7 @@
-// Gathers what glossy surfaces mirror at pixels (every GATHER_STEP-th) by rays against the real
-// geometry, which is shaded where they meet it: LIT_HITS 1 by each light, 0 as the voxels are lit.
-// In the tiles that hold any gloss, one group each. In: tiles, G-buffer, tree of triangles,
-// materials, lights, shadow maps, irradiance. Out: sums over the frames in which nothing moved.
+// Samples the specular lobe at every GATHER_STEP-th pixel, one ray per frame against the triangles,
+// in the tiles that need it (one group each). Hits are lit by each light (LIT_HITS 1) or from the
+// voxels (0). In: tiles, G-buffer, BVH, materials, lights, shadow maps, irradiance cache. Out: sums
+// over the frames in which nothing moved.
 #include "lib/gbuffer.glsl"
 #include "lib/ray_accumulation.glsl"
 #include "lib/specular_classify.glsl"
@@ -12,15 +12,15 @@ layout(local_size_x = GROUP_EDGE / GATHER_STEP, local_size_y = GROUP_EDGE / GATH
 
 layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 {
-    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_count; // groups in x of the indirect dispatch; then y and z
     uint tile_groups_y;
     uint tile_groups_z;
     uint tile_unused;
     uint tiles[];
 };
 
-// A microfacet normal that the viewer sees, about +Z, of a surface of GGX roughness alpha (Heitz
-// 2018, "Sampling the GGX Distribution of Visible Normals").
+// Samples a visible microfacet normal about +Z for GGX roughness alpha (Heitz 2018, "Sampling the
+// GGX Distribution of Visible Normals").
 vec3 sample_visible_normal(vec3 view, float alpha, vec2 u)
 {
     vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
@@ -33,8 +33,7 @@ vec3 sample_visible_normal(vec3 view, float alpha, vec2 u)
     return normalize(vec3(alpha * n.xy, max(n.z, 1e-6)));
 }
 
-// What of a ray's light is reflected: Fresnel's part times the Smith terms that are left when
-// facets are drawn from those that the viewer sees, G2 / G1.
+// Sample weight: Fresnel times G2 / G1, the Smith terms left after sampling visible normals.
 float reflected_fraction(surface s, float v_h, float n_v, float n_l, float alpha)
 {
     vec3 fresnel = specular_fresnel(s, v_h);
@@ -48,7 +47,7 @@ void main()
     uint tile = tiles[gl_WorkGroupID.x];
     uvec2 first = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE +
                   gl_LocalInvocationID.xy * uint(GATHER_STEP);
-    // Pixels of the square whose gloss wants rays have them in turns.
+    // Pixels of the square that need specular rays take turns.
     uint picture = uint(voxels.sample_count) - 1u;
     bool wanted = false;
     uvec2 pixel = first;

@@ -1,5 +1,5 @@
-// Lists the tiles of GROUP_EDGE^2 pixels that hold a surface whose reflection deserves a cone, for
-// indirect dispatch. In: G-buffer. Out: dispatch arguments and tile numbers, in any order.
+// Lists the tiles of GROUP_EDGE^2 pixels with a surface that needs a specular trace, for indirect
+// dispatch. In: G-buffer. Out: dispatch arguments and tile numbers, in any order.
 #include "lib/gbuffer.glsl"
 #include "lib/specular_classify.glsl"
 
@@ -7,7 +7,7 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 layout(std430, binding = BIND_TILES) buffer tile_storage
 {
-    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_count; // groups in x of the indirect dispatch; then y and z
     uint tile_groups_y;
     uint tile_groups_z;
     uint tile_unused;
