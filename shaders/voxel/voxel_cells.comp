@@ -1,4 +1,4 @@
-// Makes cells of the voxels that voxelization has given surfels. In: regions, index. Out: index,
+// Allocates cells for voxels that voxelization has given surfels. In: regions, index. Out: index,
 // cells.
 #include "lib/voxel_work.glsl"
 #include "lib/voxel_cells.glsl"

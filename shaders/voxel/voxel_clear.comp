@@ -1,4 +1,4 @@
-// Empties regions: gives back their cells and surfels, and blackens their texels. In: regions. Out:
+// Clears regions: frees their cells and surfels, and blackens their texels. In: regions. Out:
 // index, cells, radiance texture, free lists.
 #include "lib/voxel_work.glsl"
 #include "lib/voxel_cells.glsl"
@@ -11,7 +11,7 @@ layout(std430, binding = BIND_SURFELS) readonly buffer surfel_storage
     uint surfels[];
 };
 
-// Nothing else empties mips above a voxel that was the last in them; the others are filtered anew.
+// Clears mip voxels whose last occupied voxel was removed: filtering only visits occupied ones.
 void clear_mips(uint level, ivec3 voxel)
 {
     if (level + 1u != voxels.cell_level_count)

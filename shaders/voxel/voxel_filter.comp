@@ -1,9 +1,8 @@
-// Fills voxels of a level from the eight below them in the finer level, so that a wide cone reads
-// one coarse texel. In: list of voxels, radiance texture, cells. Out: radiance texture, cells of
-// clip levels.
+// Filters voxels of a level from the eight of the finer level, so that a wide cone reads one coarse
+// texel. In: list of voxels, radiance texture, cells. Out: radiance texture, cells of clip levels.
 //
-// For each face the two voxels of a column are seen one behind the other, then the four columns are
-// averaged (anisotropic pre-integration, Crassin et al. 2011). What is kept is optical depth.
+// Per face composites the two voxels of each column front to back, then averages the four columns
+// (anisotropic pre-integration, Crassin et al. 2011). Stores optical depth.
 #include "lib/voxel_faces.glsl"
 #include "lib/voxel_texture.glsl"
 
@@ -28,7 +27,7 @@ vec4 fetch_finer(ivec3 voxel, uint face)
                       0);
 }
 
-// Radiance seen and share covered through one texel.
+// Radiance and opacity of one texel.
 vec4 seen_through(vec4 texel)
 {
     float covered = 1.0 - exp(-texel.a);
@@ -61,7 +60,7 @@ vec4 filtered_mean(ivec3 corner)
     vec4 sum = vec4(0.0);
     for (uint axis = 0u; axis < 3u; axis++)
         for (uint side = 0u; side < 2u; side++) {
-            // The isotropic texture holds one face; only the order of front and back differs.
+            // The isotropic texture has one face; only the order of front and back differs.
             vec4 value = filtered_face(corner, 2u * axis + side);
             sum += value;
         }
@@ -70,7 +69,8 @@ vec4 filtered_mean(ivec3 corner)
 #endif
 
 #if CLIP_LEVELS
-// The mean irradiance of the voxels below, so that a level that comes to the fore is lit at once.
+// Copies the mean irradiance of the finer voxels, so that a level is lit as soon as it becomes
+// visible.
 void inherit_irradiance(uint slot, ivec3 corner)
 {
     uint cell = voxel_index[voxels.levels[LEVEL].first_index + slot] - 1u;

@@ -1,5 +1,5 @@
-// Lights the occupied voxels of some levels with what the irradiance cache holds, where their
-// direct light is as it was. In: list of cells, face records. Out: radiance texture.
+// Injects the cache's bounce into occupied voxels of some levels; reuses their stored direct light.
+// In: list of cells, face records. Out: radiance texture.
 #define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 

@@ -1,8 +1,7 @@
-// Lists what later passes work on. LISTS_RESET: repairs the free lists' lengths and empties the
-// lists. LISTS_APPEND: enters each cell into the list of those that are lit, or of those that take
-// their light from the finer level; enters the occupied voxels of the mip levels below.
-// LISTS_ARGUMENTS: turns the lists' lengths into arguments of indirect dispatches.
-// LISTS_TILE_ARGUMENTS: likewise for the tiles of large triangles.
+// Builds the work lists of later passes. STAGE 0: clamps the free lists' lengths and empties the
+// lists. STAGE 1: appends each cell to the list of lit cells or of those filtered from the finer
+// level; appends occupied voxels of the mip levels. STAGE 2: turns list lengths into indirect
+// dispatch arguments. STAGE 3: the same for tiles of large triangles.
 #include "lib/voxel_work.glsl"
 #include "lib/voxel_cells.glsl"
 
@@ -10,7 +9,7 @@ layout(local_size_x = LINEAR_GROUP) in;
 
 layout(std430, binding = BIND_VOXEL_LISTS) buffer voxel_list_storage
 {
-    uint list_words[]; // the lists; then bits of occupied mip voxels
+    uint list_words[]; // lists, then occupancy bits of mip voxels
 };
 
 void append(uint list, uint entry)
@@ -22,7 +21,7 @@ void append(uint list, uint entry)
         atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
 }
 
-// Mips and their lists follow from the coarsest level that has cells.
+// Mips and their lists derive from the coarsest level with cells.
 bool mips_are_dirty()
 {
     return voxels.levels[voxels.cell_level_count - 1u].dirty != 0u;
@@ -49,12 +48,12 @@ void main()
     counters[COUNTER_CELLS] = min(counters[COUNTER_CELLS], voxels.cell_capacity);
     counters[COUNTER_SURFELS] = min(counters[COUNTER_SURFELS], voxels.surfel_capacity);
 }
-#elif STAGE == LISTS_APPEND
-// An invocation takes so many cells and makes room for those that are lit at once: the counter is
-// what all would wait for otherwise.
+#elif STAGE == 1
+// Cells per invocation. Allocates list entries for all of them at once: otherwise invocations
+// contend for the counter.
 const uint CELL_RUN = 16u;
 
-// The list that a cell goes into; VOXEL_NONE for a free one.
+// List of a cell; VOXEL_NONE for a free cell.
 uint list_of(uint word)
 {
     if (word == VOXEL_NONE)
@@ -87,7 +86,7 @@ void main()
     uint first = region_invocation() * CELL_RUN;
     uint end = min(first + CELL_RUN, counters[COUNTER_CELLS]);
     bool mips = mips_are_dirty();
-    uint lit = 0u, filtered = 0u, of_base = 0u; // a bit for each cell
+    uint lit = 0u, filtered = 0u, of_base = 0u; // a bit per cell
     for (uint cell = first; cell < end; cell++) {
         uint bit = 1u << (cell - first);
         uint word = cells[cell * CELL_WORDS];

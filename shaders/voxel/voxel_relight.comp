@@ -1,10 +1,10 @@
-// Lights the occupied voxels of some levels. In: list of cells, surfels, materials, lights, shadow
-// maps, irradiance cache. FRESH 1: those that have not been lit yet. Out: radiance texture, and the
-// face records but for their indirect light.
+// Injects light into occupied voxels of some levels. In: list of cells, surfels, materials, lights,
+// shadow maps, irradiance cache. FRESH 1: only voxels that have not been lit yet. Out: radiance
+// texture; face records except for their irradiance.
 //
-// A face's radiance is the mean of the surfels that face its way: emission, and reflectance times
-// direct and (MULTI_BOUNCE 1) indirect irradiance. Materials are looked up here, so that editing
-// one does not voxelize anything anew.
+// Radiance of a face is the mean over the surfels that face its way: emission, plus reflectance
+// times direct and (MULTI_BOUNCE 1) cached irradiance. Materials are looked up here, so editing one
+// needs no voxelization.
 #include "lib/voxel_faces.glsl"
 #include "lib/voxel_store.glsl"
 #define SHADOW_TAPS 2u
@@ -26,7 +26,7 @@ layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
 
 layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
 {
-    uint surfaces[]; // those of instances, then material and flags of each surface
+    uint surfaces[]; // surface of each instance, then material and flags of each surface
 };
 
 layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
@@ -34,7 +34,7 @@ layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
     material_block materials[];
 };
 
-// What faces one way in the voxel: sums, weighted by area.
+// Area-weighted sums over what faces one way in the voxel.
 struct surfel_sum {
     float weight;
     uint mask;
@@ -43,7 +43,7 @@ struct surfel_sum {
     vec3 reflectance;
     vec3 emission;
     float opacity;
-    bool thin; // some of it is the side of a surface without thickness
+    bool thin; // includes a side of a zero-thickness surface
 };
 
 vec3 signed_sum(uint word)
@@ -51,7 +51,7 @@ vec3 signed_sum(uint word)
     return vec3(int(surfels[word]), int(surfels[word + 1u]), int(surfels[word + 2u]));
 }
 
-// Adds a surfel's share to a side; `turn` is -1 for the back of a double-sided surface.
+// Adds a surfel to a face's sums; `turn` is -1 for the back of a double-sided surface.
 void add_surfel(inout surfel_sum s, uint word, material_block m, bool directly, float turn)
 {
     float weight = float(surfels[word + SURFEL_WEIGHT]);
@@ -67,9 +67,9 @@ void add_surfel(inout surfel_sum s, uint word, material_block m, bool directly, 
     uint alpha = m.flags & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK);
     opacity = alpha != 0u ? clamp(opacity * m.base_color.a, 0.0, 1.0) : 1.0;
     float transmission = m.transmission * (1.0 - m.mean_metallic);
-    // Mean reflectance over the hemisphere: the dielectric layer's, then the diffuse base, of which
-    // the layer holds back what Schlick has of v.h (0.0037 of the rise, see
-    // mean_diffuse_fraction()), or the metal; metallic and roughness as they are on average.
+    // Mean reflectance over the hemisphere: the dielectric layer's plus that of the diffuse base
+    // below it, which loses the mean of Schlick's rise (0.0037 of it, see mean_diffuse_fraction()),
+    // or the metal's; with mean metallic and roughness.
     bool plain = (m.flags & MATERIAL_IOR_ONE) != 0u;
     vec3 f0 = plain ? vec3(0.0) : min(m.f0 * m.specular_color, 1.0) * m.specular;
     float f90 = plain ? 0.0 : m.specular;
@@ -88,7 +88,7 @@ void add_surfel(inout surfel_sum s, uint word, material_block m, bool directly, 
     s.opacity += weight * opacity * (1.0 - transmission);
 }
 
-// Share of the voxel's cross-section along an axis that halves of it cover.
+// Fraction of the voxel's cross-section along an axis that its halves cover.
 float coverage(uint mask, uint axis)
 {
     uint low = axis == 0u ? mask & 0x55u : axis == 1u ? mask & 0x33u : mask & 0x0fu;
@@ -96,8 +96,8 @@ float coverage(uint mask, uint axis)
     return 0.25 * float(bitCount(low | high));
 }
 
-// Of a voxel's face, averaged over places around its middle, since shadows are finer than voxels. A
-// little above, out of the relief that the mean place may lie in.
+// Direct irradiance of a face, averaged over taps around its centre, since shadows are finer than
+// voxels. The taps are lifted out of the relief in which the mean position may lie.
 const float TAP_LIFT = 0.3;
 const float TAP_SPREAD = 0.3;
 
@@ -130,7 +130,7 @@ vec3 direct_irradiance(vec3 position, vec3 normal, bool thin, float voxel_m)
 #endif
 }
 
-// Writes what a side has into a record of the irradiance cache, and adds its light to the sums.
+// Writes a face's sums to its record of the irradiance cache and adds its light to the texels.
 void store_side(uint cell, uint level, ivec3 voxel, uint i, surfel_sum s, inout face_sums sums)
 {
     uint words = make_face(cell, level, voxel, i);
@@ -145,10 +145,10 @@ void store_side(uint cell, uint level, ivec3 voxel, uint i, surfel_sum s, inout 
     vec3 direct =
         s.emission * (inverse / voxels.radiance_scale) +
         albedo * direct_irradiance(position, normal, s.thin, voxels.levels[level].voxel_edge_m);
-    // In proportion to what is covered: the parts of a slanted wall that lie in neighbouring
-    // voxels then add up to a whole one.
+    // Proportional to coverage: the parts of a slanted wall in neighbouring voxels add up to a
+    // whole one.
     float opacity = min(s.opacity * inverse, 1.0);
-    // Halves that are touched overstate what hardly covers them, such as slivers.
+    // Touched halves overestimate the coverage of slivers.
     float covered = min(coverage(s.mask, i >> 1u), s.weight / float(SURFEL_WEIGHT_SCALE));
     float depth = covered * min(-log(max(1.0 - opacity, 1e-9)), float(VOXEL_MAX_DEPTH));
     direct = clamp_to_half(direct);

@@ -1,8 +1,9 @@
-// Enters triangles into the voxels that they overlap. In: geometry, materials' textures, regions
-// and batches of triangles. Out: surfels, and the index with each touched voxel's first surfel.
+// Voxelizes triangles. In: geometry, material textures, regions and batches of triangles. Out:
+// surfels, and in the index the first surfel of each touched voxel.
 //
-// LARGE 0: an invocation takes a triangle, walks the columns of voxels along its dominant axis, and
-// leaves triangles of many columns as tiles. LARGE 1: a group takes a tile, an invocation a column.
+// LARGE 0: an invocation takes a triangle, walks the voxel columns along its dominant axis, and
+// splits triangles of many columns into tiles. LARGE 1: a group takes a tile, an invocation a
+// column.
 #include "lib/geometry.glsl"
 #include "lib/voxel_surfels.glsl"
 #include "lib/voxel_overlap.glsl"
@@ -15,7 +16,7 @@ layout(local_size_x = VOXEL_BATCH) in;
 
 layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
 {
-    uint instance_surfaces[]; // of each instance
+    uint instance_surfaces[]; // surface of each instance
 };
 
 layout(std430, binding = BIND_VOXEL_TILES) buffer tile_storage
@@ -23,17 +24,17 @@ layout(std430, binding = BIND_VOXEL_TILES) buffer tile_storage
     voxel_tile tiles[];
 };
 
-// A triangle ready to be walked. Axes a and b span the columns; c is the dominant axis.
+// A triangle prepared for the walk. Axes a and b span the columns; c is the dominant axis.
 struct walk {
     overlap_triangle t;
     uint instance;
-    uvec3 words; // where each vertex starts in `vertices`
+    uvec3 words; // first word of each vertex in `vertices`
     uint axis;   // 0: abc = yzx, 1: zxy, 2: xyz
     uint key;
     vec3 normal; // unit, world
-    float area;  // squares of the voxel edge
+    float area;  // in squared voxel edges
     uint level;
-    ivec3 low; // of the region and of the triangle's box together, abc
+    ivec3 low; // intersection of the region and the triangle's box, abc
     ivec3 high;
     uint spare;
 };
@@ -71,7 +72,7 @@ uint mask_from_abc(uint mask, uint axis)
     return turned;
 }
 
-// False for a triangle that has no area or is not finite, and for one outside the region.
+// False if the triangle has no area, is not finite, or lies outside the region.
 bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
 {
     w.instance = instance;
@@ -107,7 +108,7 @@ bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
     w.t.high = max(max(w.t.v[0], w.t.v[1]), w.t.v[2]);
     ivec3 region_low = to_abc(regions[region].low, w.axis);
     ivec3 region_high = region_low + to_abc(regions[region].size, w.axis) - 1;
-    // Clamped before the conversion, so that nothing overflows.
+    // Clamped before the conversion, so that it cannot overflow.
     dvec3 minimum = clamp(ceil(w.t.low) - 1.0lf, dvec3(region_low), dvec3(region_high) + 1.0lf);
     dvec3 maximum = clamp(floor(w.t.high), dvec3(region_low) - 1.0lf, dvec3(region_high));
     w.low = ivec3(minimum);
@@ -116,8 +117,8 @@ bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
 }
 
 #if VOXEL_COLORS && COLOR_CLASSES > 0
-// As wide as the longer side of the voxel's footprint both ways: one sample then does, whatever the
-// quality of the frame that happens to voxelize.
+// Square of the longer side of the voxel's footprint: one sample suffices, whatever the quality of
+// the frame that voxelizes.
 void square_footprint(inout texture_point point, UV_VECTOR dx, UV_VECTOR dy)
 {
     float first = sqrt(max(dot(dx.xy, dx.xy), dot(dy.xy, dy.xy)));
@@ -133,7 +134,7 @@ void square_footprint(inout texture_point point, UV_VECTOR dx, UV_VECTOR dy)
 #endif
 
 #if VOXEL_COLORS
-// Textures at the level that fits the voxel, at a place on the triangle.
+// Samples textures at the level that fits the voxel, at a point of the triangle.
 void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
 {
     material_block material = materials[instances[w.instance].material];
@@ -176,7 +177,7 @@ void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
 
 void add_voxel(inout walk w, ivec3 voxel, uint mask)
 {
-    // The middle of the columns that are touched, on the triangle's plane.
+    // Centre of the touched columns, on the triangle's plane.
     uint columns = (mask | (mask >> 4)) & 15u;
     float count = float(bitCount(columns));
     vec2 middle = vec2(0.25 + 0.5 * float(bitCount(columns & 10u)) / count,
@@ -192,7 +193,7 @@ void add_voxel(inout walk w, ivec3 voxel, uint mask)
     f.opacity = 1.0;
     f.color = vec3(1.0);
     f.emission = vec3(1.0);
-    // Area in the voxel: that of the touched columns, but no more than the triangle has.
+    // Area in the voxel: that of the touched columns, but at most the triangle's.
     float slope = abs(float(n.z)) / length(vec3(n));
     f.weight = max(1u, uint(min(w.area, 0.25 * count / slope) * float(SURFEL_WEIGHT_SCALE) + 0.5));
 #if VOXEL_COLORS
@@ -210,7 +211,7 @@ void add_voxel(inout walk w, ivec3 voxel, uint mask)
         add_fragment(surfel, f);
 }
 
-// All voxels of one column that the triangle touches.
+// Adds the voxels of one column that the triangle touches.
 void walk_column(inout walk w, ivec2 column)
 {
     dvec3 n = w.t.normal;
@@ -219,7 +220,7 @@ void walk_column(inout walk w, ivec2 column)
     dvec2 slope = -n.xy / n.z;
     double minimum = near + min(slope.x, 0.0lf) + min(slope.y, 0.0lf);
     double maximum = near + max(slope.x, 0.0lf) + max(slope.y, 0.0lf);
-    // A little wider, since these are rounded; the exact test decides.
+    // Slightly wider against rounding; the exact test decides.
     int first =
         int(clamp(ceil(minimum - 1e-6lf) - 1.0lf, double(w.low.z), double(w.high.z) + 1.0lf));
     int last = int(clamp(floor(maximum + 1e-6lf), double(w.low.z) - 1.0lf, double(w.high.z)));
@@ -245,14 +246,14 @@ void main()
     give_back_surfel(w.spare);
 }
 #else
-// Cuts a triangle of many columns into tiles; false if there is no room for them.
+// Splits a triangle of many columns into tiles; false if there is no room for them.
 bool leave_tiles(walk w, uint triangle_number, uint region)
 {
     uvec2 count = uvec2(w.high.xy - w.low.xy) / VOXEL_TILE_EDGE + 1u;
     uint total = count.x * count.y;
     uint first = atomicAdd(counters[COUNTER_TILES], total);
     if (first + total > voxels.tile_capacity) {
-        // Slots below the capacity must hold something harmless: the same tile does no harm.
+        // Slots below the capacity must be harmless to process: repeating the same tile is.
         for (uint i = first; i < min(first + total, voxels.tile_capacity); i++)
             tiles[i] = voxel_tile(w.instance, triangle_number, region, 0xffffffffu);
         return false;
