@@ -22,8 +22,8 @@
 // shaders/lib/cone_hemisphere.glsl packs them. While geometry is unchanged, updating a cone costs
 // one look-up.
 #define FACE_WORDS              12u // without the cones
-#define FACE_NORMAL             0u // mean normal, octahedral, 2 x 16 bits; VOXEL_NONE: surface removed
-#define FACE_SUB_VOXEL_POSITION 1u // mean position in the voxel, 3 x 10 bits; FACE_THIN
+#define FACE_NORMAL             0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: surface removed
+#define FACE_SUB_VOXEL_POSITION 1u  // mean position in the voxel, 3 x 10 bits; FACE_THIN
 #define FACE_LIGHT                                                                                 \
     2u // two words: irradiance / pi / scale as 3 halves, ambient visibility as a half
 #define FACE_STATE      4u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
@@ -63,7 +63,7 @@
 #define COUNTER_FREE_SURFELS     3
 #define COUNTER_RETURNED_SURFELS 4
 #define COUNTER_OVERFLOW         5 // OVERFLOW_ bits
-#define COUNTER_CLAMPED          6 // values outside the range of half floats, since the volume was created
+#define COUNTER_CLAMPED          6 // values that half floats cannot hold, since creation
 #define COUNTER_CACHE_LEFT       7 // stale faces left by the newest selection
 #define COUNTER_CACHE_CHANGE     8 // largest relative change of a face in this generation (float)
 #define COUNTER_CACHE_TRACED     9
