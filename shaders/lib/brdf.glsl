@@ -1,10 +1,10 @@
-// Reflection models. Cook-Torrance with GGX as glTF 2.0, appendix B: Trowbridge-Reitz
-// distribution, height-correlated Smith visibility (Heitz 2014), Schlick Fresnel. Blinn-Phong
-// normalised by (n + 8) / 8 pi (Akenine-Moeller et al., Real-Time Rendering). SPECULAR 0: every
-// material of the scene is matte, so that base colour over pi is all there is.
+// BRDFs. Cook-Torrance with GGX as glTF 2.0, appendix B: Trowbridge-Reitz distribution,
+// height-correlated Smith visibility (Heitz 2014), Schlick Fresnel. Blinn-Phong normalised by (n +
+// 8) / 8 pi (Akenine-Moeller et al., Real-Time Rendering). SPECULAR 0: every material is matte, so
+// only base colour / pi is compiled.
 #include "lib/surface.glsl"
 
-// Below this the highlight of a point light is narrower than any pixel; it keeps D finite.
+// Below this a point light's highlight is narrower than any pixel; keeps D finite.
 const float MIN_ALPHA = 1e-3;
 
 float alpha_of(surface s)
@@ -34,7 +34,7 @@ vec3 fresnel_schlick(vec3 f0, vec3 f90, float v_h)
     return f0 + (f90 - f0) * (m2 * m2 * m);
 }
 
-// Share of light that the dielectric layer lets through to the diffuse base.
+// Fraction that the dielectric layer transmits to the diffuse base.
 vec3 diffuse_reflectance(surface s, float v_h)
 {
 #if !SPECULAR
@@ -45,9 +45,9 @@ vec3 diffuse_reflectance(surface s, float v_h)
     return s.base_color * ((1.0 - s.metallic) * kept);
 }
 
-// The same for light that comes alike from everywhere: the mean over the cosine-weighted
-// hemisphere, in which Schlick's (1 - v.h)^5 is far smaller than for what mirrors at grazing view.
-// Polynomial fitted to the integral, off by 1e-5 at most.
+// The same for uniform light: the mean over the cosine-weighted hemisphere, in which Schlick's (1 -
+// v.h)^5 is far smaller than for the mirror direction at grazing view. Polynomial fit of the
+// integral, error at most 1e-5.
 float mean_diffuse_fraction(surface s, float n_v)
 {
     float rise = 0.02821 + n_v * (-0.07998 + n_v * (0.08657 + n_v * (-0.04368 + n_v * 0.00897)));
@@ -55,8 +55,8 @@ float mean_diffuse_fraction(surface s, float n_v)
     return 1.0 - max(reflected.r, max(reflected.g, reflected.b));
 }
 
-// Share of light from everywhere that the specular part reflects anywhere: scale of F0 and share of
-// F90. Fitted to the integral of single-scattering GGX over both hemispheres, off by 0.004 at most.
+// Mean specular albedo under uniform light: scale of F0 and of F90. Fit of the integral of
+// single-scattering GGX over both hemispheres, error at most 0.004.
 vec2 mean_specular_albedo(float roughness)
 {
     float r = clamp(roughness, 0.0, 1.0);

@@ -1,4 +1,4 @@
-// Rays against the scene's triangles. Their layout is told in shared/bvh.h.
+// Ray casts against the scene's triangles. Layout: shared/bvh.h.
 #include "lib/frame.glsl"
 #include "shared/bvh.h"
 
@@ -8,7 +8,7 @@ layout(binding = UNIT_BVH_TRIANGLES) uniform usampler2D bvh_triangles;
 struct bvh_hit {
     float distance; // in units of the direction's length
     uint triangle;
-    vec2 weights; // of the second and third corner
+    vec2 weights; // barycentric, of the second and third corner
 };
 
 const uint BVH_ROW_MASK = (1u << BVH_ROW_BITS) - 1u;
@@ -24,14 +24,14 @@ uvec4 bvh_triangle_texel(uint at)
     return texelFetch(bvh_triangles, ivec2(at & BVH_ROW_MASK, at >> BVH_ROW_BITS), 0);
 }
 
-// Where rays start that leave a surface: off it by what rounding may have moved it.
+// Origin of rays that leave a surface: offset by what rounding may have moved it.
 vec3 offset_ray_origin(vec3 world, vec3 geometric_normal)
 {
     float offset = frame.ray_min_offset_m + 4e-5 * length(world - frame.eye);
     return world - frame.bvh_origin + offset * geometric_normal;
 }
 
-// Interval of a ray in a box; empty where x > y.
+// Interval of a ray in a box; empty if x > y.
 vec2 cross_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse)
 {
     vec3 a = (lower - origin) * inverse;
@@ -42,8 +42,8 @@ vec2 cross_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse)
                 min(min(farther.x, farther.y), farther.z));
 }
 
-// Moller and Trumbore 1997; both sides. Of masked triangles (opacity below 1) so many stop a ray as
-// are opaque on average: `chance` is uniform in [0, 1).
+// Moller and Trumbore 1997; two-sided. Masked triangles (opacity below 1) stop a fraction of the
+// rays equal to their mean opacity: `chance` is uniform in [0, 1).
 void cross_triangle(uint number, vec3 origin, vec3 direction, float chance, inout bvh_hit hit)
 {
     uint at = number * BVH_TRIANGLE_TEXELS;
@@ -71,8 +71,8 @@ void cross_triangle(uint number, vec3 origin, vec3 direction, float chance, inou
     }
 }
 
-// The nearest triangle within `reach`; hit.triangle is BVH_LEAF where there is none. `origin` is
-// relative to frame.bvh_origin.
+// Closest hit within `reach`; hit.triangle is BVH_LEAF on a miss. `origin` is relative to
+// frame.bvh_origin.
 bvh_hit closest_hit(vec3 origin, vec3 direction, float reach, float chance)
 {
     bvh_hit hit;
@@ -85,7 +85,7 @@ bvh_hit closest_hit(vec3 origin, vec3 direction, float reach, float chance)
     uint depth = 0u;
     uint current = 0u;
     for (;;) {
-        // Down to a leaf, or to the end of the stack, an empty leaf.
+        // Descends to a leaf, or to the end of the stack, an empty leaf.
         while (current < BVH_LEAF) {
             uint at = current * BVH_NODE_TEXELS;
             uvec4 lower0 = bvh_node_texel(at);

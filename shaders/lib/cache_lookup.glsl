@@ -1,8 +1,8 @@
-// Looks up the irradiance cache between voxel faces.
+// Interpolates the irradiance cache between voxel faces.
 #include "lib/voxel_cells.glsl"
 
-// The finest level that holds a place with all its neighbours; `out_room` is how many voxels it
-// lies inside. The number of levels if there is none.
+// The finest level that contains a position with all its neighbours, or the number of levels if
+// none does; `out_room` is the distance to the level's rim in voxels.
 uint cache_level(vec3 position, out float out_room)
 {
     uint level = 0u;
@@ -19,12 +19,13 @@ uint cache_level(vec3 position, out float out_room)
     return voxels.cell_level_count;
 }
 
-// A surface takes from the faces of each axis that its normal has a share in, so that nothing jumps
-// where the dominant one changes.
+// A surface reads the faces of every axis of which its normal has at least this much, so that
+// nothing jumps where the dominant axis changes.
 const float MIN_WEIGHT = 0.1;
 
-// Adds irradiance / pi / scale and ambient visibility, trilinear between the faces of the eight
-// voxels around a place that look the way of `normal`. `position` is relative to the anchor.
+// Adds irradiance / pi / scale and ambient visibility, interpolated trilinearly between the faces
+// of the eight voxels around `position` that face the way of `normal`. `position` is relative to
+// the anchor.
 void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout float weight)
 {
     vec3 at = position * voxels.levels[level].inverse_voxel_edge - 0.5;
@@ -33,7 +34,7 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
     vec3 axis_weights = normal * normal;
     uint axes = (axis_weights.x > MIN_WEIGHT ? 1u : 0u) | (axis_weights.y > MIN_WEIGHT ? 2u : 0u) |
                 (axis_weights.z > MIN_WEIGHT ? 4u : 0u);
-    // As find_cell(), with what is the same for all eight read once.
+    // Inlines find_cell(), to read what is the same for all eight only once.
     ivec3 origin = voxels.levels[level].origin;
     uint first_index = voxels.levels[level].first_index;
     uint shift = voxels.levels[level].edge_log2;
@@ -63,7 +64,7 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
             float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
             facing *= facing;
             vec4 light = face_shown_light(words);
-            // Nothing is known yet where not even ambient visibility is.
+            // Ambient visibility 0 marks an unknown face.
             float w = light.a > 0.0 ? fraction * facing * facing : 0.0;
             sum += w * light;
             weight += w;
@@ -71,7 +72,7 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
     }
 }
 
-// Where the faces that look the surface's way are not known, any of its voxel's faces do.
+// If the matching faces are unknown, uses any face of the voxel.
 void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout float weight)
 {
     uint cell = find_cell(level, ivec3(floor(position * voxels.levels[level].inverse_voxel_edge)));
@@ -90,7 +91,7 @@ void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout 
     }
 }
 
-// Irradiance / pi / scale; a: ambient visibility. Zero where nothing is known yet.
+// Irradiance / pi / scale; a: ambient visibility. Zero where unknown.
 vec4 cached_irradiance(vec3 world, vec3 normal)
 {
     vec3 position = world - voxels.anchor;
@@ -101,7 +102,7 @@ vec4 cached_irradiance(vec3 world, vec3 normal)
     vec4 sum = vec4(0.0);
     float weight = 0.0;
 #if CLIP_LEVELS
-    // Over its last voxels a level fades into the next.
+    // A level fades into the next over its last voxels.
     float own = level + 1u < voxels.cell_level_count ? clamp(room * 0.25, 0.0, 1.0) : 1.0;
     uint levels = own < 1.0 ? 2u : 1u;
     for (uint i = 0u; i < levels; i++) {

@@ -1,7 +1,7 @@
-// Asks for voxel faces of the irradiance cache.
+// Requests voxel faces of the irradiance cache.
 #include "lib/cache_lookup.glsl"
 
-// Asks for the faces that cached_irradiance() reads.
+// Requests the faces that cached_irradiance() reads.
 void request_faces(vec3 world, vec3 normal, uint frame_number)
 {
     vec3 position = world - voxels.anchor;

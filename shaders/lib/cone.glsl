@@ -1,14 +1,14 @@
-// The one cone through the voxels that every kind of indirect light is gathered with.
+// Cone tracing through the voxels, for every kind of indirect light.
 //
-// Voxels are an absorbing and emitting volume of flakes that face six ways: a ray of direction d
-// crosses optical depth sum |d_i| depth_i, taken from the three faces that it comes upon, so a wall
-// hides what is behind it whatever the angle, and no surface hides what it faces. (Six faces as in
+// Voxels are an absorbing and emitting volume of flakes with six orientations. A ray of direction d
+// crosses optical depth sum |d_i| depth_i, read from the three faces that it enters: a wall
+// occludes what is behind it at any angle, and no surface occludes what it faces. (Six faces as in
 // Crassin et al. 2011, "Interactive Indirect Illumination Using Voxel Cone Tracing"; flakes as in
-// Heitz et al. 2015, "The SGGX Microflake Distribution".) Steps attenuate by exp(-depth), so their
-// length does not change what a wall lets through.
+// Heitz et al. 2015, "The SGGX Microflake Distribution".) Steps attenuate by exp(-depth), so the
+// step length does not change what a wall transmits.
 //
-// CONE_SMOOTH 1 blends two levels, CONE_SKIP 1 leaps over empty space; who includes this first
-// says.
+// CONE_SMOOTH 1 blends two levels, CONE_SKIP 1 skips empty space; set by the first file that
+// includes this.
 #include "lib/voxel.glsl"
 
 layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
@@ -17,26 +17,26 @@ struct cone {
     vec3 origin;    // relative to the anchor, m
     vec3 direction; // unit
     float tangent;  // of the half-angle
-    float step;     // over the diameter
-    float widest;   // diameter in m that it does not grow beyond
-    float reach_m;  // end
+    float step;     // in diameters
+    float widest;   // maximum diameter in m
+    float reach_m;  // length in m
 };
 
 struct cone_light {
-    vec3 light;          // in units of the volume's scale
-    float transmittance; // share that leaves the volume
-    float occlusion;     // of 1, near hits counting more: for ambient occlusion
-    float hit_m;         // distance of the step that took up most, and the diameter read there
+    vec3 light;          // radiance / the volume's scale
+    float transmittance; // fraction that leaves the volume
+    float occlusion;     // 0 to 1, near hits weighted more: for ambient occlusion
+    float hit_m;         // distance of the step that absorbed most, and the diameter there
     float hit_diameter_m;
     float hit_density; // optical depth per metre there
 };
 
 const uint CONE_MAX_STEPS = 256u;
 const float CONE_OPAQUE = 0.004;
-// Filtering spreads surfaces outwards, so that bodies seem larger and openings smaller: each face
-// is read so many voxels nearer to its body. More than this would turn thin walls inside out.
+// Filtering dilates surfaces, so bodies grow and openings shrink: each face is read so many voxels
+// nearer to its body. A larger inset would turn thin walls inside out.
 const float FACE_INSET = 0.25;
-// Of steps, over the widest diameter: filtering spreads a voxel over two.
+// Maximum step over the maximum diameter: filtering spreads a voxel over two.
 const float WIDEST_STEP = 1.5;
 
 vec3 voxel_position(vec3 world)
@@ -44,9 +44,9 @@ vec3 voxel_position(vec3 world)
     return world - voxels.anchor;
 }
 
-// How far inside a level a place is, in its voxels; negative outside what filtering can reach.
-// Where addresses wrap, the outermost half voxel would be filtered with the other side, and faces
-// are read a little aside.
+// Distance of a position from the level's rim, in its voxels; negative where filtering cannot
+// reach. Toroidal levels lose half a voxel, which would be filtered with the opposite side, and the
+// inset of faces.
 float inside_level(uint level, vec3 position)
 {
     ivec3 origin = voxels.levels[level].origin;
@@ -55,7 +55,7 @@ float inside_level(uint level, vec3 position)
     return min(rim.x, min(rim.y, rim.z)) - (0.5 + FACE_INSET) * float(voxels.levels[level].wraps);
 }
 
-// Edge in m of the finest voxels that hold a place; those of the coarsest level beyond them all.
+// Edge in m of the finest voxels at a position; outside all levels those of the coarsest.
 float finest_voxel(vec3 position)
 {
     float edge = voxels.levels[0].voxel_edge_m;
@@ -65,15 +65,15 @@ float finest_voxel(vec3 position)
     return edge;
 }
 
-// Where cones start, in voxels above their surface: `usual`, but above a thin one beyond all that
-// filtering shows of its back, which would hide from it what it faces.
+// Start of cones in voxels above their surface: `usual`, but above a thin surface beyond the
+// filtered image of its own back, which would occlude what it faces.
 float cone_start(float usual, bool thin, vec3 normal)
 {
     vec3 size = abs(normal);
     return thin ? max(0.5 + (1.0 + FACE_INSET) * (size.x + size.y + size.z), usual) : usual;
 }
 
-// Filtered light and optical depth across a voxel of a level, for a ray of the given direction.
+// Filtered radiance and optical depth across a voxel of the level, along a direction.
 vec4 sample_level(uint level, vec3 position, vec3 direction)
 {
     ivec3 origin = voxels.levels[level].origin;
@@ -98,8 +98,8 @@ vec4 sample_level(uint level, vec3 position, vec3 direction)
 #endif
 }
 
-// Light and optical depth per metre at a place, filtered over `diameter`. `out_level` is the level
-// that was read (the finer of two), or the number of levels beyond the coarsest.
+// Radiance and optical depth per metre, filtered over `diameter`. `out_level` is the level read
+// (the finer of two), or the number of levels outside the coarsest.
 vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_level)
 {
     float wanted = max(log2(diameter * voxels.levels[0].inverse_voxel_edge), 0.0);
@@ -115,7 +115,7 @@ vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_l
     out_level = level;
     if (level > last)
         return vec4(0.0);
-    // Where a clip level ends, the next one fades in.
+    // The rim of a clip level fades into the next level.
     if (level + 1u < voxels.cell_level_count)
         blend = max(blend, 1.0 - room * 0.25);
 #if CONE_SMOOTH
@@ -132,8 +132,8 @@ vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_l
 }
 
 #if CONE_SKIP
-// How far a ray may go on where a coarse level is empty: filtering reaches the neighbours of the
-// voxel that a place lies in, so that half a voxel all around holds nothing.
+// How far to skip where a coarse level is empty: filtering reaches the neighbouring voxels, so half
+// a voxel around the position is empty.
 float empty_distance(uint level, vec3 position, vec3 direction)
 {
     uint coarse = min(level + 2u, voxels.level_count - 1u);
@@ -158,12 +158,12 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     float t = 0.0;
     float voxel = voxels.levels[0].voxel_edge_m;
     for (uint i = 0u; i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE; i++) {
-        // Close to its start a cone is thinner than a voxel: no step is longer than one there.
+        // Near its start a cone is thinner than a voxel: limit steps to one voxel there.
         float length_m = max(min(c.step, 1.0) * voxel, c.step * 2.0 * c.tangent * t);
         length_m = min(length_m, max(WIDEST_STEP * c.widest, voxel));
         float middle = t + 0.5 * length_m;
         uint level;
-        // Hardly narrower than the step, so that nothing falls between two samples.
+        // Not much narrower than the step, so that samples leave no gaps.
         float diameter = min(max(2.0 * c.tangent * middle, length_m), max(c.widest, voxel));
         vec4 value = sample_voxels(c.origin + middle * c.direction, c.direction, diameter, level);
         if (level >= voxels.level_count)
@@ -184,7 +184,7 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
         }
         passed -= absorbed;
         t += length_m;
-        // Where levels are coarser than the cone is wide, steps follow them.
+        // Where levels are coarser than the cone, steps follow them.
         voxel = max(voxel, diameter < voxels.levels[level].voxel_edge_m
                                ? voxels.levels[level].voxel_edge_m
                                : 0.0);

@@ -1,8 +1,8 @@
-// Irradiance from the hemisphere's cones.
+// Irradiance from a hemisphere of cones.
 #include "lib/cone.glsl"
 #include "lib/environment.glsl"
 
-// Which of the two sets of cones: the cache's, or that of pixels.
+// The set of cones: the pixels' or the cache's.
 #if PIXEL_CONES
 #define CONE_MARCH voxels.pixel_march
 #define CONES      voxels.pixel_cones
@@ -11,18 +11,18 @@
 #define CONES      voxels.cache_cones
 #endif
 
-// Roughness whose lobe is about as wide as a cone, for the environment's filtered levels.
+// Roughness whose lobe is about as wide as a cone, for the environment's prefiltered levels.
 const float CONE_ROUGHNESS = 0.5;
 
 struct cone_sum {
-    vec3 light; // irradiance / pi, in units of the volume's scale
+    vec3 light; // irradiance / pi / the volume's scale
     float ambient_visibility;
 };
 
-// The hemisphere's cones about a normal.
+// The cone set around a normal.
 struct hemisphere {
     mat3 axes;
-    cone c; // but for the direction
+    cone c; // without the direction
 };
 
 cone_sum no_cone_sum()
@@ -33,7 +33,7 @@ cone_sum no_cone_sum()
     return none;
 }
 
-// `position` is relative to the anchor; `turn` is cosine and sine of a turn about the normal.
+// `position` is relative to the anchor; `turn` is cosine and sine of the rotation about the normal.
 hemisphere begin_hemisphere(vec3 position, vec3 normal, bool thin, vec2 turn)
 {
     hemisphere g;
@@ -56,9 +56,9 @@ vec3 escaped_light(vec3 direction, float transmittance)
 }
 #endif
 
-// Filtering reaches through a wall one voxel thick: where most of it is met, its far side is mixed
-// in, which slanted walls show to the ray too. So light is read where the wall begins: as far in
-// front of the hit as there is still some of it.
+// Filtering reaches through a wall one voxel thick: at the densest step its far side is mixed in,
+// and a ray against a slanted wall sees it. So radiance is read at the front of the wall: as far
+// before the hit as density remains.
 const float FRONT_DIAMETERS[2] = float[](0.75, 0.4);
 const float FRONT_DENSITY = 0.05;
 
@@ -75,9 +75,9 @@ float front_of_hit(cone c, cone_light found)
     return found.hit_m;
 }
 
-// Traces cone `i` and adds its share; `out_hit` remembers what counts most in it: distance in
-// voxels of the finest level (half), transmittance (8 bits), log2 of the diameter in those voxels
-// (8 bits, in sixteenths).
+// Traces cone `i` and adds its contribution. `out_hit` packs its main hit: distance in voxels of
+// the finest level (half), transmittance (8 bits), log2 of the diameter in those voxels (8 bits, in
+// sixteenths).
 void add_cone(hemisphere g, uint i, inout cone_sum sum, out uint out_hit)
 {
     voxel_cone local = CONES[i];
@@ -97,7 +97,7 @@ void add_cone(hemisphere g, uint i, inout cone_sum sum, out uint out_hit)
               (uint(diameter + 0.5) << 24);
 }
 
-// Adds the light of cone `i` as it is now where it hit when it was traced.
+// Adds the present radiance at the stored hit of cone `i`.
 void add_cone_at_hit(hemisphere g, uint i, uint word, inout cone_sum sum)
 {
     voxel_cone local = CONES[i];

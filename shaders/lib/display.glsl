@@ -1,4 +1,4 @@
-// From radiance to what a screen shows: exposure, tone curve, transfer function.
+// Radiance to display values: exposure, tone curve, transfer function.
 #include "lib/frame.glsl"
 
 const uint TONEMAP_HABLE = 0u;
@@ -53,7 +53,7 @@ vec3 tonemap(vec3 color)
     return color;
 }
 
-// IEC 61966-2-1 where gamma is 0, else a plain power.
+// IEC 61966-2-1 if gamma is 0, else a plain power.
 vec3 transfer(vec3 color)
 {
     color = clamp(color, 0.0, 1.0);

@@ -1,4 +1,4 @@
-// Light from the environment: background, diffuse and specular ambient.
+// Environment light: background, ambient diffuse and specular.
 #include "lib/brdf.glsl"
 #include "shared/environment_block.h"
 
@@ -7,8 +7,9 @@ layout(std430, binding = BIND_ENVIRONMENT) readonly buffer environment_storage
     environment_block environment;
 };
 
-layout(binding = UNIT_ENVIRONMENT) uniform sampler2DArray environment_levels; // by roughness
-layout(binding = UNIT_BACKGROUND) uniform sampler2D environment_background;   // equirectangular
+layout(binding = UNIT_ENVIRONMENT) uniform sampler2DArray
+    environment_levels; // prefiltered by roughness
+layout(binding = UNIT_BACKGROUND) uniform sampler2D environment_background; // equirectangular
 
 vec3 to_environment(vec3 direction)
 {
@@ -71,7 +72,7 @@ vec3 environment_specular(vec3 direction, float roughness)
     return mix(a, b, level - lower) * frame.environment_intensity;
 }
 
-// Radiance towards the viewer by environment light, without occlusion but the material's map.
+// Radiance towards the viewer from the environment, occluded by the material's map only.
 vec3 environment_light(surface s)
 {
     float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);

@@ -1,4 +1,4 @@
-// The frame's uniforms and small functions that every pass may use.
+// The frame's uniforms and small functions for all passes.
 #include "shared/frame_block.h"
 #include "shared/slots.h"
 #include "shared/work_groups.h"
@@ -10,7 +10,7 @@ layout(std140, binding = BIND_FRAME) uniform frame_uniforms
 
 const float PI = 3.14159265358979;
 
-// Through the pixel's centre; its part along the camera's forward direction is 1.
+// Through the pixel's centre; the component along the camera's forward direction is 1.
 vec3 ray_direction(vec2 pixel)
 {
     return frame.ray_corner + (pixel.x + 0.5) * frame.ray_dx + (pixel.y + 0.5) * frame.ray_dy;
@@ -27,8 +27,8 @@ float luminance(vec3 color)
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// The unit vector of any v, however long or short: squares of its parts may leave the range of
-// floats. `fallback` for one without a direction: 0, or not finite.
+// Unit vector of any v, however long or short: squares of its components may leave the range of
+// floats. Returns `fallback` if v is 0 or not finite.
 vec3 safe_normalize(vec3 v, vec3 fallback)
 {
     vec3 size = abs(v);
@@ -56,7 +56,7 @@ vec3 octahedral_decode(vec2 p)
     return normalize(n);
 }
 
-// An orthonormal frame about n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+// Orthonormal frame about n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
 mat3 frame_about(vec3 n)
 {
     float turn = n.z >= 0.0 ? 1.0 : -1.0;

@@ -1,4 +1,4 @@
-// The G-buffer: two uvec4 a pixel.
+// The G-buffer: two uvec4 per pixel.
 //   0: base colour and metallic, specular weight; shading and geometric normal (octahedral)
 //   1: dielectric F0 and roughness; emission (shared exponent); thin; occlusion; shading model
 #include "lib/surface.glsl"
@@ -15,8 +15,8 @@ uint pixel_index(uvec2 pixel)
     return pixel.y * frame.render_size.x + pixel.x;
 }
 
-// Three mantissas of 13 bits and a shared exponent of 8, in 32 + 15 bits: all that floats hold, to
-// 1/8191 of the brightest channel. The greatest exponent says that a channel is not finite.
+// Three mantissas of 13 bits and a shared exponent of 8, in 32 + 15 bits: the range of floats, to
+// 1/8191 of the brightest channel. The maximum exponent marks a channel that is not finite.
 const int EMISSION_BIAS = 127;
 const uint THIN_BIT = 0x8000u;
 
@@ -64,7 +64,7 @@ void gbuffer_store_background(uvec2 pixel)
     gbuffer[at + 1u] = uvec4(0u, 0u, 0u, SHADE_BACKGROUND << 24);
 }
 
-// Of a background pixel, only `shading`, `view` and `emission` (black) mean something.
+// For background pixels only `shading`, `view` and `emission` (black) are valid.
 surface gbuffer_load(uvec2 pixel)
 {
     uint at = 2u * pixel_index(pixel);

@@ -1,6 +1,6 @@
-// From a visibility id to a surface: fetches the triangle, intersects the pixel's ray with it,
-// interpolates the attributes and evaluates the material. Texture gradients are ray differentials
-// (Igehy 1999, "Tracing Ray Differentials"), so they are exact for planar triangles.
+// Visibility id to surface: fetches the triangle, intersects the pixel's ray with it, interpolates
+// attributes and evaluates the material. Texture gradients are ray differentials (Igehy 1999,
+// "Tracing Ray Differentials"), exact for planar triangles.
 #include "lib/surface.glsl"
 #include "lib/material.glsl"
 #include "shared/instance_block.h"
@@ -28,11 +28,12 @@ layout(std430, binding = BIND_INDICES) readonly buffer index_storage
 
 struct triangle {
     uint instance;
-    uvec3 words;     // where each vertex starts in `vertices`
-    mat3 linear;     // of world_from_local
-    vec3 corner;     // first corner minus where rays come from
+    uvec3 words;     // first word of each vertex in `vertices`
+    mat3 linear;     // linear part of world_from_local
+    vec3 corner;     // first corner minus the ray origin
     vec3 edges[2];   // from the first corner
-    vec3 volumes[3]; // dotted with a ray: the determinant, and those of the second and third weight
+    vec3 volumes[3]; // dotted with a direction: the determinant, and those of the second and third
+                     // weight
 };
 
 float fetch(uint word)
@@ -61,11 +62,11 @@ vec3 fetch_direction(uint word)
     return bits == VERTEX_NO_DIRECTION ? vec3(0.0) : octahedral_decode(unpackSnorm2x16(bits));
 }
 
-// A ray, those through the pixels to the right and below, and the pixel that it is for.
+// A ray, its differentials to the right and down, and its pixel.
 struct camera_ray {
     vec3 origin; // world
     vec3 direction;
-    vec3 dx; // added to the direction
+    vec3 dx; // direction differentials
     vec3 dy;
     vec2 pixel;
 };
@@ -75,7 +76,7 @@ camera_ray pixel_camera_ray(vec2 pixel)
     return camera_ray(frame.eye, ray_direction(pixel), frame.ray_dx, frame.ray_dy, pixel);
 }
 
-// `id` is a visibility id above 0; `eye` is where rays come from.
+// `id` is a visibility id above 0; `eye` is the ray origin.
 triangle fetch_triangle(uint id, vec3 eye)
 {
     triangle t;
@@ -96,8 +97,8 @@ triangle fetch_triangle(uint id, vec3 eye)
     return t;
 }
 
-// Where a ray from there meets the triangle's plane: weights of the three corners (Moller and
-// Trumbore 1997). Also right outside the triangle.
+// Barycentric weights where a ray from the eye meets the triangle's plane (Moller and Trumbore
+// 1997). Valid outside the triangle, too.
 vec3 plane_weights(triangle t, vec3 direction)
 {
     float determinant = dot(direction, t.volumes[0]);
@@ -119,10 +120,10 @@ vec4 interpolate4(triangle t, uint word, vec3 w)
            fetch4(t.words.z + word) * w.z;
 }
 
-// What a transparent layer does to the light behind it.
+// How a transparent layer changes the light behind it.
 struct transparent_layer {
     float alpha;        // coverage (alphaMode BLEND)
-    float transmission; // share of the diffuse part that passes through
+    float transmission; // transmitted fraction of the diffuse part
     float thickness_m;
     float ior;
     vec3 attenuation_color;
@@ -147,7 +148,7 @@ vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
 }
 #endif
 
-// What a material says of a point, with its textures.
+// A material evaluated at a point, with its textures.
 struct material_point {
     vec4 base;
     vec3 emission;
@@ -180,7 +181,7 @@ texture_point find_texture_point(triangle t, camera_ray ray, vec3 weights)
     return point;
 }
 
-// Loops over the slots in use, so that the sampler code is compiled once per space.
+// Loops over the slots in use, so that sampler code is compiled once per colour space.
 void apply_textures(triangle t, camera_ray ray, vec3 weights, material_block material,
                     inout material_point p)
 {
@@ -240,7 +241,7 @@ material_point find_material_point(triangle t, camera_ray ray, vec3 weights,
     return p;
 }
 
-// Evaluates what a ray sees of the triangle. Back faces are turned to the viewer.
+// Evaluates the surface where a ray hits the triangle. Back faces are flipped towards the viewer.
 surface load_surface(uint id, camera_ray ray, out transparent_layer through)
 {
     triangle t = fetch_triangle(id, ray.origin);
@@ -254,8 +255,8 @@ surface load_surface(uint id, camera_ray ray, out transparent_layer through)
     float mirrored = (instances[t.instance].flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     s.geometric_normal = safe_normalize(face * mirrored, s.view);
     vec3 local_normal = interpolate_direction(t, VERTEX_NORMAL, weights);
-    // The cofactor matrix turns normals as the inverse transpose does, and exists for flat scales
-    // too.
+    // The cofactor matrix transforms normals like the inverse transpose, and exists for flat
+    // scales, too.
     vec3 turned = cross(t.linear[1], t.linear[2]) * local_normal.x +
                   cross(t.linear[2], t.linear[0]) * local_normal.y +
                   cross(t.linear[0], t.linear[1]) * local_normal.z;

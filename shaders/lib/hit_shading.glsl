@@ -1,5 +1,5 @@
-// What a ray against the real geometry sees: surfaces, shaded where it meets them, or the
-// environment. LIT_HITS 1: surfaces are lit by each light; 0: as the voxels around them are.
+// Closest hit against the BVH, shaded; the environment on a miss. LIT_HITS 1: hits are lit by each
+// light; 0: from the voxels around them.
 #define CONE_SMOOTH  0
 #define CELLS_ACCESS readonly
 #include "lib/geometry.glsl"
@@ -10,13 +10,13 @@
 
 struct ray_light {
     vec3 radiance;    // cd/m^2
-    float distance_m; // 1e30 where nothing is met
+    float distance_m; // 1e30 on a miss
 };
 
-// Optical depth across a voxel from which its light counts; else the next coarser level is read.
+// Below this optical depth across a voxel, reads the next coarser level.
 const float HIT_DEPTH = 0.1;
 
-// Radiance / scale of the surfaces at a place that face a ray, as voxels have it.
+// Radiance / scale of the surfaces at a position that face a ray, from the voxels.
 vec3 voxel_light_at(vec3 world, vec3 direction)
 {
     vec3 position = voxel_position(world);
@@ -29,8 +29,7 @@ vec3 voxel_light_at(vec3 world, vec3 direction)
     return value.a > 1e-6 ? value.rgb / value.a : vec3(0.0);
 }
 
-// Share of irradiance / pi that a surface reflects towards the viewer, by its matte and glossy
-// parts.
+// Fraction of irradiance / pi reflected towards the viewer, diffuse and specular.
 vec3 whole_reflectance(surface s)
 {
     float n_v = clamp(dot(s.normal, s.view), 0.0, 1.0);
@@ -40,8 +39,8 @@ vec3 whole_reflectance(surface s)
            mix(s.f90, 1.0, s.metallic) * scale_bias.y;
 }
 
-// What a surface sends back along the ray that met it. `spread` is the distance in m between rays
-// of neighbouring pixels there, over that to the hit.
+// Radiance of a hit towards the ray's origin. `spread`: distance in m between neighbouring pixels'
+// rays at the hit, over the hit distance.
 vec3 shade_hit(bvh_hit hit, uint flags, vec3 origin, vec3 direction, float spread,
                float min_roughness, vec2 pixel)
 {
@@ -53,11 +52,11 @@ vec3 shade_hit(bvh_hit hit, uint flags, vec3 origin, vec3 direction, float sprea
         id,
         camera_ray(origin + frame.bvh_origin, direction, axes[0] * spread, axes[1] * spread, pixel),
         through);
-    // Highlights of smooth surfaces are met too seldom by rays that spread: their lobes are widened
-    // to the ray's own (Kaplanyan and Dachsbacher 2013, "Path Space Regularization").
+    // Spread rays rarely hit highlights of smooth surfaces: widens lobes to the ray's own
+    // (Kaplanyan and Dachsbacher 2013, "Path Space Regularization").
     s.roughness = max(s.roughness, min_roughness);
     vec3 sum = (flags & BVH_LIT_DIRECTLY) != 0u ? vec3(0.0) : s.emission;
-    if (s.shading >= SHADE_UNLIT) // a drawing, not a source of light
+    if (s.shading >= SHADE_UNLIT) // unlit materials emit no light
         return vec3(0.0);
 #if PUNCTUAL_LIGHTS || AREA_LIGHTS
     sum += direct_light(s, uvec2(0u));
@@ -70,8 +69,8 @@ vec3 shade_hit(bvh_hit hit, uint flags, vec3 origin, vec3 direction, float sprea
 }
 
 // `origin` is relative to frame.bvh_origin, `direction` unit, `chance` uniform in [0, 1). `spread`:
-// distance in m between rays of neighbouring pixels where they start, and how much that grows per
-// m. `roughness` is of the lobe that the ray is from.
+// distance in m between neighbouring pixels' rays at the origin, and its growth per m. `roughness`
+// is that of the lobe that the ray samples.
 ray_light trace_radiance(vec3 origin, vec3 direction, float chance, vec2 spread, float roughness,
                          vec2 pixel)
 {

@@ -1,9 +1,9 @@
-// What a surface makes of indirect irradiance. The occlusion map applies to this alone, since it
-// stands for detail that neither shadow maps nor voxels hold.
+// Reflects indirect irradiance. The occlusion map applies only here: it stands for detail that
+// neither shadow maps nor voxels resolve.
 #include "lib/environment.glsl"
 #include "lib/specular_classify.glsl"
 
-// `light`: irradiance / pi in units of the volume's scale, and ambient visibility. Radiance in
+// `light`: irradiance / pi / the volume's scale, and ambient visibility. Returns radiance in
 // cd/m^2.
 vec3 reflect_irradiance(surface s, vec4 light)
 {
@@ -20,7 +20,7 @@ vec3 reflect_irradiance(surface s, vec4 light)
 #endif
 #endif
 #if FILTERED
-    float open = 1.0; // rays know what is in the way
+    float open = 1.0; // rays trace occlusion themselves
 #else
     float open = s.occlusion;
 #endif

@@ -1,4 +1,4 @@
-// Direct light on a surface from punctual lights (KHR_lights_punctual) and planar emitters.
+// Direct light from punctual lights (KHR_lights_punctual) and area lights.
 #include "lib/brdf.glsl"
 #include "lib/cone.glsl"
 #include "shared/area_light_block.h"
@@ -7,6 +7,10 @@
 #if SHADOWS
 #include "lib/shadow.glsl"
 #endif
+
+#include "lib/cone.glsl" // unconditional, since files are included once
+#include "shared/area_light_block.h"
+#include "shared/light_block.h"
 
 #if PUNCTUAL_LIGHTS
 layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
@@ -31,13 +35,12 @@ layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
 #endif
 
 #if RAY_SHADOWS
-// Share of the light of lights that have a size that arrives, by rays; whoever asks for direct
-// light says.
+// Traced visibility of area and sphere lights; set by the caller.
 vec3 traced_visibility = vec3(1.0);
 #elif CONE_SHADOWS
-// Share of a light of a size that reaches a point, by a cone towards it; `hard` is what a shadow
-// map says of its middle. Voxels know nothing of what is nearer than they are large, but where
-// penumbrae are narrower than a voxel the map is right anyway.
+// Visibility of an area or sphere light by a cone towards it; `hard` is the shadow map's for its
+// centre. Voxels miss occluders nearer than a voxel, but penumbrae narrower than a voxel come from
+// the map anyway.
 float soft_visibility(float hard, surface s, vec3 to_light, float distance_m, float radius_m)
 {
     vec3 normal = s.geometric_normal;
@@ -50,12 +53,12 @@ float soft_visibility(float hard, surface s, vec3 to_light, float distance_m, fl
     c.tangent = max(radius_m / max(distance_m, 1e-6), 1e-3);
     c.step = 1.0;
     c.widest = voxels.cone_max_diameter_m;
-    // Not into the voxels around the light, however wide the cone has become there.
+    // Ends before the voxels around the light, however wide the cone is there.
     c.reach_m = (distance_m - (start + 2.0) * voxel) / (1.0 + 3.0 * c.tangent);
     cone_light found = trace_cone(c, 1.0);
     float penumbra = radius_m * found.hit_m / max(distance_m - found.hit_m, 1e-6);
     float fraction = found.transmittance < 0.99 ? smoothstep(1.0, 3.0, penumbra / voxel) : 0.0;
-    // Nor are the steps that voxels make of the surface itself occluders.
+    // Excludes the stair steps of the surface's own voxels.
     fraction *= smoothstep(1.0, 3.0, dot(to_light, normal) * found.hit_m / voxel);
     return mix(hard, found.transmittance, fraction);
 }
@@ -72,8 +75,7 @@ float distance_attenuation(float squared, float range_m)
     return attenuation;
 }
 
-// What a light would send by the surface to the viewer if nothing stood between; `l` is the way to
-// it.
+// Unshadowed radiance towards the viewer from a light; `l` is the direction to it.
 vec3 punctual_unshadowed(surface s, light_block light, out vec3 l)
 {
     l = -light.direction;
@@ -94,7 +96,7 @@ vec3 punctual_unshadowed(surface s, light_block light, out vec3 l)
     return brdf_cosine(s, l) * light.intensity * strength;
 }
 
-// Whether its shadows are soft.
+// Whether the light casts soft shadows.
 bool has_size(light_block light)
 {
     return light.radius_m > 0.0 && light.type != LIGHT_DIRECTIONAL &&
@@ -124,7 +126,7 @@ vec3 punctual_light(surface s, light_block light)
 #endif
 
 #if AREA_LIGHTS
-// Integral of one edge of a polygon seen from the origin (Lambert 1760; Baum et al. 1989): the
+// Integral over one polygon edge as seen from the origin (Lambert 1760; Baum et al. 1989): the
 // angle it spans times the unit normal of its plane, component along n. a and b are unit vectors.
 // angle / sin(angle) by the rational fit of Hill and Heitz 2016, "Real-Time Area Lighting: a
 // Journey from Research to Production".
@@ -139,7 +141,7 @@ float edge_integral(vec3 a, vec3 b, vec3 n)
     return dot(cross(a, b), n) * angle_over_sine;
 }
 
-// Form factor of a quad for a receiver at the origin with unit normal n, clipped at its horizon:
+// Form factor of a quad for a receiver at the origin with unit normal n, clipped to its horizon:
 // irradiance = pi * radiance * form factor. Corners counter-clockwise seen from the lit side.
 float quad_form_factor(vec3 corners[4], vec3 n)
 {
@@ -150,7 +152,7 @@ float quad_form_factor(vec3 corners[4], vec3 n)
         heights[i] = dot(corners[i], n);
     }
     float sum = 0.0;
-    vec3 entry = n; // where the outline rises above the horizon, and where it sinks below
+    vec3 entry = n; // where the outline crosses the horizon upwards, and downwards
     vec3 leave = n;
     for (int i = 0; i < 4; i++) {
         int next = (i + 1) & 3;
@@ -169,8 +171,8 @@ float quad_form_factor(vec3 corners[4], vec3 n)
 }
 
 #if SPECULAR
-// Specular light of a planar emitter by its point nearest to the mirror ray, with the lobe widened
-// by the emitter's extent (Karis 2013, "Real Shading in Unreal Engine 4").
+// Specular light of a planar emitter from its point nearest to the mirror ray, with the lobe
+// widened by the emitter's extent (Karis 2013, "Real Shading in Unreal Engine 4").
 vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reversed)
 {
     vec3 mirror = reflect(-s.view, s.normal);
@@ -194,10 +196,10 @@ vec3 area_specular(surface s, area_light_block light, vec3 corners[4], bool reve
     float cosine = max(-dot(l, normal), 0.0);
     float alpha = alpha_of(s);
     float solid_angle = min(light.area_m2 * cosine / squared, 2.0 * PI);
-    // A lobe narrower than the emitter sees radiance, not intensity: the widened lobe integrates
-    // to at most one over the emitter.
+    // A lobe narrower than the emitter reflects radiance, not intensity: the widened lobe
+    // integrates to at most one over the emitter.
     float widened = sqrt(alpha * alpha + solid_angle / (4.0 * PI));
-    // At grazing angles the widening does not suffice; no surface reflects more than it receives.
+    // At grazing angles widening is not enough; no surface reflects more than it receives.
     vec3 fraction = min(specular_brdf_cosine(s, l, min(widened, 1.0)) * solid_angle, 1.0);
     return fraction * light.radiance;
 }
@@ -218,7 +220,7 @@ vec3 area_unshadowed(surface s, area_light_block light)
     vec3 corners[4];
     for (int i = 0; i < 4; i++)
         corners[i] = light.corners[reversed ? 3 - i : i].xyz - s.position;
-    // A corner at the receiver has no direction; the emitter itself is not lit by itself.
+    // A corner at the receiver has no direction; an emitter does not light itself.
     if (abs(side) < 1e-6 * sqrt(light.area_m2))
         return vec3(0.0);
     float form_factor = max(-quad_form_factor(corners, s.normal), 0.0);
@@ -257,7 +259,7 @@ vec3 area_light(surface s, area_light_block light)
 }
 #endif
 
-// Radiance that a surface sends to the viewer by direct light, in cd/m^2.
+// Radiance towards the viewer from direct light, in cd/m^2.
 vec3 direct_light(surface s, uvec2 pixel)
 {
     vec3 sum = vec3(0.0);

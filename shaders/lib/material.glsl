@@ -1,7 +1,7 @@
-// Materials and their textures, as glTF 2.0 and its KHR_materials_* extensions define them.
-// COLOR_CLASSES, DATA_CLASSES: how many texture arrays (one per size) the scene has of sRGB and of
-// linear pictures; TEXTURE_TRANSFORMS: whether any texture has a transform of its own;
-// SECOND_UV_SET: whether any texture uses the second set of texture coordinates.
+// Materials and their textures as in glTF 2.0 and its KHR_materials_* extensions. COLOR_CLASSES,
+// DATA_CLASSES: number of texture arrays (one per size) of sRGB and of linear images;
+// TEXTURE_TRANSFORMS: whether any texture has a transform; SECOND_UV_SET: whether any texture uses
+// the second set of texture coordinates.
 #include "lib/frame.glsl"
 #include "shared/material_block.h"
 #include "shared/texture_block.h"
@@ -11,7 +11,7 @@ layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
     material_block materials[];
 };
 
-// By the frame's quality, unless the shader says otherwise.
+// From the frame's quality, unless the shader overrides it.
 #ifndef TEXTURE_ANISOTROPY
 #define TEXTURE_ANISOTROPY frame.texture_max_anisotropy
 #endif
@@ -31,7 +31,7 @@ layout(binding = UNIT_COLOR_CLASSES) uniform sampler2DArray color_classes[COLOR_
 layout(binding = UNIT_DATA_CLASSES) uniform sampler2DArray data_classes[DATA_CLASSES];
 #endif
 
-// Texture coordinates of both sets, and their change per pixel to the right and downwards.
+// Texture coordinates of both sets and their differentials to the right and down.
 #if SECOND_UV_SET
 #define UV_VECTOR vec4
 #else
@@ -41,7 +41,7 @@ struct texture_point {
     UV_VECTOR uv;
     UV_VECTOR dx;
     UV_VECTOR dy;
-    float level_dither; // added to the level of detail
+    float level_dither; // added to the mip level
 };
 
 const float MAX_FOOTPRINT_TEXELS = 1e7;
@@ -56,8 +56,8 @@ float wrap_coordinate(float u, uint mode, float edge)
     return clamp(u, half_texel, 1.0 - half_texel);
 }
 
-// A software renderer executes both sides of every branch, so colour and data textures are sampled
-// by different functions: each runs through the classes of its own space only.
+// A software renderer executes both sides of every branch, so colour and data textures have
+// separate functions: each loops over the classes of its own colour space only.
 #if COLOR_CLASSES > 0
 vec4 sample_color_class(uint class_number, vec3 at, float lod)
 {
@@ -104,7 +104,7 @@ vec4 sample_data_class(uint class_number, vec3 at, float lod)
 }
 #endif
 
-// Where samplers read one level only, picks it by chance, so that on average levels blend as they
+// Where samplers read one level only, dithers the level, so that levels blend on average as they
 // would trilinearly. Interleaved gradient noise (Jimenez 2014, "Next Generation Post Processing in
 // Call of Duty: Advanced Warfare").
 float dither_level(vec2 pixel)
@@ -113,8 +113,8 @@ float dither_level(vec2 pixel)
     return frame.texture_dither_levels * (noise - 0.5);
 }
 
-// Where and how to sample: the footprint's place in the texture, its longer axis, level and number
-// of samples along the axis.
+// Sampling footprint: position in the texture, longer axis, level and number of samples along the
+// axis.
 struct footprint {
     uint class_number;
     vec3 at; // z: layer
@@ -124,15 +124,15 @@ struct footprint {
 };
 
 // Anisotropic filtering: trilinear samples along the longer axis of the pixel's footprint, at the
-// level that fits the shorter one (as EXT_texture_filter_anisotropic describes it). Done here
-// because the loops of software samplers grow without bound with the gradients.
+// level that fits the shorter one (as EXT_texture_filter_anisotropic describes). Done here because
+// the loops of software samplers grow without bound with the gradients.
 void set_filter(inout footprint f, vec2 dx, vec2 dy, float level_dither, float edge)
 {
     float length_x = length(dx) * edge;
     float length_y = length(dy) * edge;
     f.axis = length_x > length_y ? dx : dy;
     float major = max(max(length_x, length_y), 1e-6);
-    // Gradients of triangles seen edge-on can be anything.
+    // Gradients of triangles seen edge-on can have any value.
     if (!(major < MAX_FOOTPRINT_TEXELS)) {
         f.axis = vec2(0.0);
         f.lod = log2(edge);
@@ -171,7 +171,7 @@ footprint find_footprint(uint texture_number, texture_point point)
         at = (floor(at * edge) + 0.5) / edge;
     at.x = wrap_coordinate(at.x, (bits >> TEXTURE_WRAP_U_BIT) & 3u, edge);
     at.y = wrap_coordinate(at.y, (bits >> TEXTURE_WRAP_V_BIT) & 3u, edge);
-    // Far texture coordinates lose their fraction in the sampler's fixed point: keep them small.
+    // Large texture coordinates lose their fraction in the sampler's fixed point: keep them small.
     at -= floor(at * (1.0 / 64.0)) * 64.0;
     f.at = vec3(at, float(bits >> TEXTURE_LAYER_BIT));
     return f;

@@ -1,5 +1,4 @@
-// What rays from pixels have found, several pictures of one size. GATHER_STEP: every how many-th
-// pixel has rays.
+// Accumulation planes of ray samples, all of one size. GATHER_STEP: every how many-th pixel traces.
 #include "lib/surface.glsl"
 #include "shared/ray_accumulation.h"
 
@@ -13,13 +12,13 @@ uvec2 accumulation_size()
     return (frame.render_size + uint(GATHER_STEP) - 1u) / uint(GATHER_STEP);
 }
 
-// Distance in m between neighbouring rays where they start.
+// Distance in m between the origins of neighbouring rays.
 float accumulation_spacing_m(surface s)
 {
     return length(s.position - frame.eye) * length(frame.ray_dx) * float(GATHER_STEP);
 }
 
-// Where a pixel's entry of a picture is.
+// Index of a pixel in a plane.
 uint accumulation_index(uint picture, uvec2 texel)
 {
     uvec2 size = accumulation_size();
@@ -27,8 +26,8 @@ uint accumulation_index(uint picture, uvec2 texel)
 }
 
 #if RAY_SHADOWS
-// Behind the pictures: of each pixel, sums of the shares of lights' light that arrive, and their
-// number.
+// Behind the planes, at full resolution: per pixel the sum of light visibility, and the sample
+// count.
 uint visibility_index(uvec2 pixel)
 {
     return accumulation_index(uint(VISIBILITY_PLANE), uvec2(0)) + pixel.y * frame.render_size.x +
@@ -36,11 +35,10 @@ uint visibility_index(uvec2 pixel)
 }
 #endif
 
-// Neighbours off a surface's plane by a pixel's width at its distance hardly count.
+// Neighbours that are off a surface's plane by a pixel's width at its distance hardly count.
 const float PLANE_PIXELS = 1.0;
 
-// How much a neighbour is of the same surface; `pixel_m`: distance in m between the pixels
-// compared.
+// Similarity of a neighbour's surface; `pixel_m`: distance in m between the compared pixels.
 float likeness(surface s, surface n, float pixel_m)
 {
     float off = dot(n.position - s.position, s.geometric_normal) / (PLANE_PIXELS * pixel_m);
@@ -51,8 +49,8 @@ float likeness(surface s, surface n, float pixel_m)
     return n.shading < SHADE_UNLIT ? exp(-off * off) * cosine8 : 0.0;
 }
 
-// Of a window of 5x5 whose rim counts half, which holds each place of an interleaved square of 4x4
-// once, so that on a plane the noise of single pixels cancels.
+// Weights of a 5x5 window whose rim counts half: it contains each position of the interleaved 4x4
+// square once, so per-pixel noise cancels on a plane.
 float window_weight(int x, int y)
 {
     return (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0);

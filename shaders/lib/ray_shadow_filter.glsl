@@ -1,10 +1,10 @@
-// What gi/ray_shadows.comp has found for pixels, averaged over neighbours on the same surface.
+// Filters the visibility that gi/ray_shadows.comp has traced, over neighbours on the same surface.
 #include "lib/gbuffer.glsl"
 #include "lib/ray_accumulation.glsl"
 
 #if RAY_SHADOWS
-// Neighbours beyond the edge of a shadow differ by more than twice what so few rays have by chance,
-// whose variance is at most 1/4 over their number.
+// Rejects neighbours across a shadow's edge: those that differ by more than twice the noise of so
+// few rays, whose variance is at most 1/4 over their number.
 float same_shadow(vec4 a, vec4 b)
 {
     vec3 difference = abs(a.rgb / a.a - b.rgb / b.a);
@@ -12,8 +12,8 @@ float same_shadow(vec4 a, vec4 b)
     return exp(-maximum * maximum / (1.0 / a.a + 1.0 / b.a));
 }
 
-// Share of the light of lights that have a size that arrives at a pixel. Sums are of rays: a mean
-// of each neighbour counts as much as its rays are many.
+// Visibility of area and sphere lights at a pixel. Neighbours are weighted by their number of rays,
+// since sums are stored.
 vec3 filtered_visibility(surface s, uvec2 pixel)
 {
     vec4 own = accumulated[visibility_index(pixel)];

@@ -1,5 +1,5 @@
 // Shadow-map look-ups: percentage-closer filtering (Reeves et al. 1987) over the hardware's 2x2
-// comparison, with an offset along the surface normal against acne (Holbert 2011).
+// comparison, with a normal offset against acne (Holbert 2011).
 #include "lib/frame.glsl"
 #include "shared/shadow_view_block.h"
 
@@ -8,7 +8,7 @@ layout(std430, binding = BIND_SHADOW_VIEWS) readonly buffer shadow_view_storage
     shadow_view_block shadow_views[];
 };
 
-// Layers of the scene's lights, then those of the views' cascades.
+// Layers of the scene's lights, then of the views' cascades.
 layout(binding = UNIT_SHADOW_MAP) uniform sampler2DArrayShadow shadow_map;
 
 #ifndef SHADOW_TAPS
@@ -35,7 +35,7 @@ float filtered_comparison(vec4 at)
     return lit / float(taps);
 }
 
-// How far to lift a point off its surface, in texels, against acne: more at grazing light.
+// Normal offset in texels against acne: more at grazing light.
 float offset_texels(vec3 normal, vec3 to_light)
 {
     float cosine = clamp(dot(normal, to_light), 0.0, 1.0);
@@ -44,21 +44,21 @@ float offset_texels(vec3 normal, vec3 to_light)
 
 bool is_inside(vec2 uv)
 {
-    // As far as the lift along the normal and the filter reach.
+    // Reach of the normal offset and the filter.
     float margin = 5.0 / float(textureSize(shadow_map, 0).x);
     return all(greaterThan(uv, vec2(margin))) && all(lessThan(uv, vec2(1.0 - margin)));
 }
 
 #if SINGLE_VIEW_SHADOWS
-// A place in a shadow view: uv, layer, reversed depth; how lifting it off its surface moves it
-// there; and whether the view sees it.
+// A position in a shadow view: uv, layer, reversed depth; how the normal offset moves it there; and
+// whether the view contains it.
 struct shadow_lookup {
     vec4 at;
     vec3 lift;
     bool inside;
 };
 
-// Position in a spot's or sun's view.
+// Position in the view of a spot or the sun.
 shadow_lookup project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light)
 {
     mat4 clip_from_world = shadow_views[view_number].clip_from_world;
@@ -77,9 +77,9 @@ shadow_lookup project_to_shadow(uint view_number, vec3 position, vec3 normal, ve
     return lookup;
 }
 
-// Refines a place in the sun's map of the whole scene to the smallest of the view's cascades that
-// holds it, where texels are smaller and so is the lift. All share the sun's axes, so a cascade is
-// a scale and an offset. Returns its number, frame.cascade_count for none.
+// Refines a position in the sun's map of the whole scene to the smallest cascade that contains it,
+// where texels and the normal offset are smaller. All share the sun's axes, so a cascade is a scale
+// and an offset. Returns its number, or frame.cascade_count.
 uint refine_by_cascade(inout shadow_lookup lookup)
 {
     uint found = frame.cascade_count;
@@ -99,7 +99,8 @@ uint refine_by_cascade(inout shadow_lookup lookup)
 #endif
 
 #if POINT_SHADOWS
-// Position in a light's cube of six views, as resident/lights.c lays them out: uv, layer, depth.
+// Position in a light's cube of six views, ordered as renderer/gpu_scene/lights.c does: uv, layer,
+// depth.
 vec4 project_to_cube(uint first_view, vec3 origin, vec3 position, vec3 normal, vec3 to_light)
 {
     vec3 d = position - origin;
@@ -120,8 +121,8 @@ vec4 project_to_cube(uint first_view, vec3 origin, vec3 position, vec3 normal, v
 }
 #endif
 
-// Share of a light that reaches a point: 0 in shadow, 1 lit. `shadow` is the light's, `origin` its
-// position (unused for directional lights).
+// Visibility of a light: 0 in shadow, 1 lit. `shadow` is the light's, `origin` its position (unused
+// for directional lights).
 float shadow_visibility(light_shadow shadow, vec3 origin, vec3 position, vec3 normal, vec3 to_light)
 {
     if (shadow.first_view == NO_SHADOW)
@@ -131,7 +132,7 @@ float shadow_visibility(light_shadow shadow, vec3 origin, vec3 position, vec3 no
 #if SINGLE_VIEW_SHADOWS
     if (shadow.view_count == 1u) {
         shadow_lookup lookup = project_to_shadow(shadow.first_view, position, normal, to_light);
-#ifndef VIEWLESS // cascades are a view's own
+#ifndef VIEWLESS // cascades belong to a view
         if (shadow.has_cascades != 0u)
             refine_by_cascade(lookup);
 #endif
@@ -143,7 +144,7 @@ float shadow_visibility(light_shadow shadow, vec3 origin, vec3 position, vec3 no
     if (shadow.view_count == 6u)
         at = project_to_cube(shadow.first_view, origin, position, normal, to_light);
 #endif
-    // Beyond what a spot or the sun sees nothing casts.
+    // Nothing outside the view of a spot or the sun casts shadows.
     float lit = filtered_comparison(at);
     return inside ? lit : 1.0;
 }

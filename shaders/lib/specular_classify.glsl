@@ -1,5 +1,5 @@
-// Whether a surface mirrors sharply and strongly enough for a cone of its own; others see about
-// what the hemisphere sees. Both limits are the quality level's.
+// Whether a surface reflects sharply and strongly enough to need a specular trace; others use the
+// cached irradiance. Both limits come from the quality level.
 #include "lib/surface.glsl"
 #include "lib/voxel.glsl"
 

@@ -1,4 +1,4 @@
-// A shaded point: unpacked from the G-buffer, or made from a visibility id.
+// A surface point to shade: unpacked from the G-buffer, or loaded from a visibility id.
 #include "lib/frame.glsl"
 #include "shared/shading_model.h"
 
@@ -15,5 +15,5 @@ struct surface {
     float occlusion;
     vec3 emission; // cd/m^2
     uint shading;  // SHADE_*
-    bool thin;     // seen from both sides, so perhaps without thickness
+    bool thin;     // double-sided, so possibly without thickness
 };

@@ -1,5 +1,5 @@
-// Where voxels and their cells lie. Voxel coordinates count from the volume's anchor; those of a
-// toroidal level wrap around in memory, so that a moved level keeps what it still covers.
+// Addresses of voxels and cells. Voxel coordinates count from the volume's anchor. Those of a
+// toroidal level wrap in memory, so that a moved level keeps what it still covers.
 #include "lib/frame.glsl"
 #include "shared/voxel_records.h"
 
@@ -24,7 +24,7 @@ ivec3 slot_address(uint level, uint slot)
     return ivec3(slot & mask, (slot >> shift) & mask, slot >> (2u * shift));
 }
 
-// The voxel that lies at a slot now.
+// The voxel that a slot holds now.
 ivec3 slot_voxel(uint level, uint slot)
 {
     ivec3 origin = voxels.levels[level].origin;
@@ -49,7 +49,7 @@ vec3 face_direction(uint face)
     return vec3(axis == 0u ? turn : 0.0, axis == 1u ? turn : 0.0, axis == 2u ? turn : 0.0);
 }
 
-// The face whose direction is nearest: dominant axis and side.
+// The face nearest to a direction: dominant axis and side.
 uint dominant_face(vec3 n)
 {
     vec3 size = abs(n);

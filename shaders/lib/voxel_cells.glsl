@@ -1,4 +1,4 @@
-// The index from voxels to cells, and the cells. CELLS_ACCESS: readonly where a pass only reads.
+// The index from voxels to cells, and the cells. CELLS_ACCESS: readonly in passes that only read.
 #include "lib/voxel.glsl"
 
 #ifndef CELLS_ACCESS
@@ -27,14 +27,14 @@ uint cell_face(uint cell, uint face)
     return record == 0u ? VOXEL_NONE : (record - 1u) * voxels.face_record_words;
 }
 
-// Irradiance / pi / scale, and ambient visibility.
+// Irradiance / pi / scale and ambient visibility.
 vec4 face_light(uint words)
 {
     return vec4(unpackHalf2x16(faces[words + FACE_LIGHT]),
                 unpackHalf2x16(faces[words + FACE_LIGHT + 1u]));
 }
 
-// The same as pixels see it: averaged over neighbours, which look in different directions.
+// The same as pixels read it: smoothed over neighbours, which trace different directions.
 vec4 face_shown_light(uint words)
 {
     return vec4(unpackHalf2x16(faces[words + FACE_SHOWN]),

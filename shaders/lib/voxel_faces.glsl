@@ -1,5 +1,5 @@
-// Makes face records. A new one takes its light from the next coarser level, so that a voxel that
-// comes into reach is not black until its cones are traced.
+// Allocates face records. A new one copies its irradiance from the next coarser level, so that a
+// newly covered voxel is not black until its cones are traced.
 #include "lib/voxel_cells.glsl"
 
 layout(std430, binding = BIND_VOXEL_COUNTERS) coherent buffer voxel_counter_storage
@@ -9,7 +9,7 @@ layout(std430, binding = BIND_VOXEL_COUNTERS) coherent buffer voxel_counter_stor
 
 layout(std430, binding = BIND_VOXEL_FREE) coherent buffer voxel_free_storage
 {
-    uint free_words[]; // free cells, surfels, surfels given back, face records
+    uint free_words[]; // free cells, free surfels, returned surfels, free face records
 };
 
 uint free_faces_start()
@@ -32,7 +32,7 @@ void inherit_light(uint words, uint level, ivec3 voxel, uint face)
     faces[words + FACE_STATE] = FACE_VALID;
 }
 
-// The record's first word, making it where there is none; VOXEL_NONE if there is no room.
+// First word of the face's record, allocated if missing; VOXEL_NONE if the pool is full.
 uint make_face(uint cell, uint level, ivec3 voxel, uint face)
 {
     uint words = cell_face(cell, face);

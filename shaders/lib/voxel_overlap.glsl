@@ -1,18 +1,18 @@
-// Which halves of a voxel a triangle touches: the separating-axis test of a triangle and a closed
-// box (Akenine-Moeller 2001, "Fast 3D Triangle-Box Overlap Testing"; laid out as projections as by
-// Schwarz and Seidel 2010, "Fast Parallel Surface and Solid Voxelization on GPUs"), in double.
+// Which halves of a voxel a triangle overlaps: separating-axis test of a triangle and a closed box
+// (Akenine-Moeller 2001, "Fast 3D Triangle-Box Overlap Testing"; as projections, Schwarz and Seidel
+// 2010, "Fast Parallel Surface and Solid Voxelization on GPUs"), in double.
 //
-// Coordinates are voxels, turned so that Z is the triangle's dominant axis. A voxel is touched if
-// one of its eight halves (2^3) is, since their union is the closed voxel.
+// Coordinates are in voxels, rotated so that Z is the triangle's dominant axis. A voxel is
+// overlapped if any of its eight halves (2^3) is, since their union is the closed voxel.
 
 struct overlap_triangle {
     dvec3 v[3];
-    dvec3 normal; // not unit; cross product of two edges
+    dvec3 normal; // not normalised; cross product of two edges
     dvec3 low;
     dvec3 high;
 };
 
-// Halves of a square that the projected triangle touches: bit x + 2 y. `low` is the square's
+// Halves of a square that the projected triangle overlaps: bit x + 2 y. `low` is the square's
 // corner.
 uint touched_squares(dvec2 a, dvec2 b, dvec2 c, bool clockwise, dvec2 low)
 {
@@ -31,14 +31,14 @@ uint touched_squares(dvec2 a, dvec2 b, dvec2 c, bool clockwise, dvec2 low)
     return mask;
 }
 
-// Halves of [low, low + 1] that [from, to] touches: bit 0 the lower, bit 1 the upper.
+// Halves of [low, low + 1] that overlap [from, to]: bit 0 the lower, bit 1 the upper.
 uint touched_halves(double low, double from, double to)
 {
     return (from <= low + 0.5lf && to >= low ? 1u : 0u) |
            (from <= low + 1.0lf && to >= low + 0.5lf ? 2u : 0u);
 }
 
-// Bit x + 2 y + 4 z for each half of the voxel at `low`.
+// Bit x + 2 y + 4 z per half of the voxel at `low`.
 uint touched_voxel_halves(overlap_triangle t, dvec3 low)
 {
     uint xy = touched_squares(t.v[0].xy, t.v[1].xy, t.v[2].xy, t.normal.z < 0.0lf, low.xy);

@@ -1,4 +1,4 @@
-// Turns what a voxel's surfaces send out into the texels of its faces.
+// Converts the radiance of a voxel's surfaces to the texels of its faces.
 #include "lib/voxel_texture.glsl"
 
 struct face_sums {
@@ -13,8 +13,7 @@ face_sums no_face_sums()
     return sums;
 }
 
-// Adds a surface of radiance rgb and optical depth a: seen from a side it has the depth that it
-// shows there.
+// Adds a surface of radiance rgb and optical depth a; each face gets the depth projected to it.
 void add_face(inout face_sums sums, vec3 normal, vec4 value)
 {
 #if VOXEL_DIRECTIONS == 1

@@ -1,4 +1,4 @@
-// Adds what a triangle has in a voxel to the voxel's surfels.
+// Adds a triangle's part of a voxel to the voxel's surfels.
 #include "lib/voxel_work.glsl"
 
 layout(std430, binding = BIND_VOXEL_INDEX) coherent buffer voxel_index_storage
@@ -40,10 +40,10 @@ uint allocate_surfel(uint key)
     return surfel;
 }
 
-// The surfel of a key in a voxel's list; `spare` is one that was taken but not needed, or NONE.
+// The surfel of a key in a voxel's list; `spare` is one that was allocated but not needed, or NONE.
 uint find_surfel(uint index_word, uint key, inout uint spare)
 {
-    uint seen = VOXEL_NONE; // head of the part that was searched before
+    uint seen = VOXEL_NONE; // head of the part already searched
     for (;;) {
         uint entry = atomicOr(voxel_index[index_word], 0u);
         uint head = entry == 0u ? VOXEL_NONE : entry & ~VOXEL_TAG_SURFEL;

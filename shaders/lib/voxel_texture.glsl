@@ -1,12 +1,12 @@
-// Writes the radiance texture: premultiplied by optical depth, rgb = radiance * depth / scale and
-// a = optical depth across a voxel, so that filtering keeps what lies behind each other apart.
+// Writes the radiance texture, premultiplied by optical depth: rgb = radiance * depth / scale, a =
+// optical depth across a voxel. Filtering then weights radiance by depth.
 #include "lib/voxel.glsl"
 #include "lib/clamp_half.glsl"
 
 layout(binding = IMAGE_VOXEL_RADIANCE, rgba16f) uniform image3D voxel_image;
 
-// Faces lie along X, levels along Y. Where addresses wrap, a texel at the rim is repeated in the
-// border on the other side, so that trilinear filtering sees its neighbours across the seam.
+// Faces lie along X, levels along Y. In toroidal levels, a texel at the rim is repeated in the
+// border on the opposite side, so that trilinear filtering reads across the seam.
 void store_voxel_face(uint level, ivec3 address, uint face, vec4 value)
 {
     ivec3 texels = voxels.levels[level].texel_origin;

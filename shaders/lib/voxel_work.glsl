@@ -1,4 +1,4 @@
-// What voxelization works through: regions of voxels to fill anew, and batches of triangles.
+// Work lists of voxelization: regions to refill, and batches of triangles.
 #include "lib/voxel.glsl"
 #include "shared/voxel_work.h"
 
@@ -15,17 +15,17 @@ layout(std430, binding = BIND_VOXEL_COUNTERS) coherent buffer voxel_counter_stor
 
 layout(std430, binding = BIND_VOXEL_FREE) coherent buffer voxel_free_storage
 {
-    uint free_words[]; // free cells, free surfels, surfels that were taken but not needed
+    uint free_words[]; // free cells, free surfels, returned surfels
 };
 
-// a / b for a < 2^24: integers are divided lane by lane on CPUs.
+// a / b for a < 2^24: CPUs divide integers lane by lane.
 uint quotient(uint a, uint b)
 {
     uint q = uint(float(a) / float(b));
     return q * b > a ? q - 1u : (q + 1u) * b <= a ? q + 1u : q;
 }
 
-// Finds the voxel that an invocation is for; false beyond the last one.
+// The voxel of an invocation; false past the last one.
 bool region_voxel(uint number, out uint level, out ivec3 voxel)
 {
     if (number >= voxels.region_voxel_count)
@@ -42,11 +42,11 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
     return true;
 }
 
-// One invocation goes through so many voxels, so that those of no interest cost next to nothing: on
-// CPUs a branch saves no time, but a loop ends when no lane has anything left.
+// Voxels per invocation, so that empty ones cost almost nothing: on CPUs a branch saves no time,
+// but a loop ends when no lane has work left.
 #define REGION_RUN 32u
 
-// Which of the run's voxels are occupied, one bit each.
+// Occupied voxels of the run, one bit each.
 #define FIND_OCCUPIED(run, out_bits)                                                               \
     uint out_bits = 0u;                                                                            \
     for (uint i_ = 0u; i_ < REGION_RUN; i_++) {                                                    \
@@ -57,7 +57,7 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
             out_bits |= 1u << i_;                                                                  \
     }
 
-// Groups of LINEAR_GROUP over x and y, since one dimension may hold 65535 groups only.
+// Groups of LINEAR_GROUP over x and y, since one dimension may hold only 65535 groups.
 uint region_invocation()
 {
     return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * uint(LINEAR_GROUP)) +
