@@ -1,12 +1,11 @@
-// What the irradiance cache knows about the surfaces in sight. In: G-buffer, cells, face records.
-// Out: radiance, as values that are shown without exposure and tone curve.
+// Debug view of the irradiance cache on visible surfaces. In: G-buffer, cells, face records. Out:
+// display values, shown without exposure and tone curve.
 //
-// AGE 0: ambient visibility, white where nothing near hides the hemisphere. AGE 1: how the record
-// of each pixel's voxel face has come about: green, its light is of this generation and its cones
-// went through geometry as it is; yellow, its light is of an older generation and will be gathered
-// at the hits of its cones; red, its cones went through older geometry; light blue, never traced,
-// but with light that another level has; blue, never traced; grey, there is no record. The older
-// the newest request of a pixel for it, the darker.
+// AGE 0: ambient visibility, white where nothing near occludes the hemisphere. AGE 1: state of the
+// record of each pixel's voxel face. Green: light of this generation, cones traced through the
+// present geometry. Yellow: light of an older generation, to be looked up at the cones' hits. Red:
+// cones traced through older geometry. Light blue: never traced, light copied from another level.
+// Blue: never traced. Grey: no record. The older its newest request, the darker.
 #define CELLS_ACCESS readonly
 #include "lib/gbuffer.glsl"
 #include "lib/cache_lookup.glsl"
@@ -18,8 +17,8 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 const float REQUEST_FRAMES = 24.0; // as in shaders/gi/cache_select.comp
 const float DARKEST = 0.35;
 
-// The record of the voxel face that a surface lies in, or of another of the voxel's faces;
-// VOXEL_NONE if there is none.
+// Record of the voxel face at a surface, or of another face of the voxel; VOXEL_NONE if there is
+// none.
 uint record_at(vec3 world, vec3 normal)
 {
     vec3 position = world - voxels.anchor;

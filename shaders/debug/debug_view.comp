@@ -1,5 +1,5 @@
-// Pictures of what the renderer works with. In: G-buffer, ids, light masks, shadow views. Out:
-// radiance, as values that are shown without exposure and tone curve.
+// Debug views of intermediate results. In: G-buffer, ids, light masks, shadow views. Out: display
+// values, shown without exposure and tone curve.
 #include "lib/gbuffer.glsl"
 #include "lib/display.glsl"
 #include "lib/radiance_buffer.glsl"
@@ -29,7 +29,7 @@ const uint VIEW_IDS = 8u;
 const uint VIEW_LIGHTS_PER_TILE = 9u;
 const uint VIEW_SHADOW_CASCADES = 10u;
 
-// A different colour for every number (hash of Jarzynski and Olano 2020, "pcg").
+// A distinct colour for every number (hash of Jarzynski and Olano 2020, "pcg").
 vec3 number_color(uint number)
 {
     uint state = number * 747796405u + 2891336453u;

@@ -1,9 +1,7 @@
-// Counts values that are not finite. In: a resource. Out: how many there are in it, and where the
-// first is.
+// Counts NaN and infinity. In: a resource. Out: their number and the position of the first.
 //
-// CHECK_BUFFER: a buffer of records, of which masks tell the words that are floats and those of
-// which the low or the high half is a half float. CHECK_TEXTURE_2D, _ARRAY and _3D: a texture of
-// floats.
+// TEXTURE 0: a buffer of records; masks tell which words are floats and which have a half float in
+// the low or high half. TEXTURE 1, 2, 3: a 2D texture, an array, a 3D texture of floats.
 #include "shared/finite_check.h"
 #include "shared/slots.h"
 #include "shared/work_groups.h"
@@ -31,7 +29,7 @@ layout(binding = UNIT_CHECKED) uniform sampler2DArray checked;
 layout(binding = UNIT_CHECKED) uniform sampler3D checked;
 #endif
 
-// By its bits: compilers may take floats to be finite.
+// Tests the bits: compilers may assume that floats are finite.
 uint float_is_bad(uint bits)
 {
     return (bits & 0x7f800000u) == 0x7f800000u ? 1u : 0u;
@@ -42,7 +40,7 @@ uint half_is_bad(uint bits)
     return (bits & 0x7c00u) == 0x7c00u ? 1u : 0u;
 }
 
-// `shape` and `masks` are those of the block: storage is slow to read again for each word.
+// `shape` and `masks` are copies from the block: reading storage for every word is slow.
 uint count_bad(uint at, finite_check_shape shape, finite_check_masks masks)
 {
 #if TEXTURE == CHECK_BUFFER

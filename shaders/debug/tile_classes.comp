@@ -1,8 +1,7 @@
-// What the pixels of each tile of GROUP_EDGE^2 call for, in one colour: matte surfaces green,
-// glossy ones, which have a reflection of their own, blue, transparent layers cyan, emission
-// yellow, and magenta where a tile holds more than one of these; background dark grey. In:
-// G-buffer, heads of the lists of transparent layers (LAYERS 1). Out: radiance, as values that are
-// shown without exposure and tone curve.
+// Debug view of what the pixels of each tile of GROUP_EDGE^2 need. Green: matte surfaces. Blue:
+// surfaces with a specular trace. Cyan: transparent layers. Yellow: emission. Magenta: more than
+// one of these. Dark grey: background. In: G-buffer, heads of the lists of transparent layers
+// (LAYERS 1). Out: display values, shown without exposure and tone curve.
 #include "lib/gbuffer.glsl"
 #include "lib/radiance_buffer.glsl"
 
@@ -11,10 +10,10 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 #if LAYERS
 layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
-    uint fragment_count;    // met by rasterisation
-    uint fragment_capacity; // room for them
+    uint fragment_count;    // rasterized
+    uint fragment_capacity; // size of the pool
     uint fragment_unused[2];
-    uint fragment_words[]; // heads of the pixels' lists, 0: empty
+    uint fragment_words[]; // head of each pixel's list, 0: empty
 };
 #endif
 
@@ -72,7 +71,7 @@ void main()
     barrier();
     if (!inside)
         return;
-    // Shaded by slope, so that the scene can be made out.
+    // Shaded by slope to make the scene recognisable.
     float slope = s.shading == SHADE_BACKGROUND ? 1.0 : clamp(dot(s.normal, s.view), 0.0, 1.0);
     radiance[pixel_index(pixel)] = vec4(class_color(tile_classes) * (0.7 + 0.3 * slope), 1.0);
 }

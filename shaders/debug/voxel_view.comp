@@ -1,11 +1,10 @@
-// The voxels of one level as a ray meets them. In: index, cells, face records, radiance texture.
-// Out: radiance, as light (SHOW 3 and 4) or as values that are shown without exposure and tone
-// curve.
+// Debug view of the voxels of one level, by ray marching. In: index, cells, face records, radiance
+// texture. Out: radiance (SHOW 3 and 4) or display values, shown without exposure and tone curve.
 //
 // SHOW 0: opacity 1 - exp(-depth) of the chosen face; 1: its albedo; 2: its mean normal; 3: its
-// radiance; 4: its cached irradiance / pi. CELLS 0: a mip level, which has opacity and radiance
-// alone; a checker stands for the rest. Where a voxel has no surface that faces the chosen way, it
-// is shown dimmed by the face that looks most towards the eye.
+// radiance; 4: its cached irradiance / pi. CELLS 0: a mip level, which has only opacity and
+// radiance; a checker stands for the rest. A voxel without a surface on the chosen face shows,
+// dimmed, the face most turned to the eye.
 #define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 #include "lib/display.glsl"
@@ -25,11 +24,11 @@ struct voxel_hit {
     bool found;
     ivec3 voxel;
     bvec3 side;              // axis of the face that was entered
-    float t;                 // along the ray, whose forward part is 1
+    float t;                 // along the ray, whose forward component is 1
     vec3 sub_voxel_position; // within the voxel
 };
 
-// Light times depth, and depth.
+// Radiance times depth, and depth.
 vec4 face_texel(uint level, ivec3 voxel, uint face)
 {
     ivec3 texels = voxels.levels[level].texel_origin;
@@ -56,9 +55,9 @@ bool is_occupied(uint level, ivec3 voxel)
 #endif
 }
 
-// The first occupied voxel but for those next to the eye, which would hide the rest (Amanatides and
-// Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing"). Origin and direction in voxels of
-// the level.
+// The first occupied voxel, skipping those next to the eye, which would hide the rest (Amanatides
+// and Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing"). Origin and direction in voxels
+// of the level.
 voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
 {
     voxel_hit hit;
@@ -97,7 +96,7 @@ voxel_hit march_voxels(uint level, vec3 origin, vec3 direction)
     return hit;
 }
 
-// `least`: optical depth that tells a surface from the rim of one that faces another way.
+// `minimum`: optical depth of a surface, above that of a neighbour's rim.
 bool face_has_surface(uint level, ivec3 voxel, uint cell, uint face, float minimum)
 {
 #if FROM_TEXTURE
@@ -108,8 +107,8 @@ bool face_has_surface(uint level, ivec3 voxel, uint cell, uint face, float minim
 #endif
 }
 
-// The chosen face, or the one of those with a surface that looks most against the ray; VOXEL_NONE
-// if the voxel has no surface.
+// The chosen face, or of those with a surface the one most turned against the ray; VOXEL_NONE if
+// the voxel has no surface.
 uint shown_face(uint level, ivec3 voxel, uint cell, uint chosen, vec3 direction)
 {
     float minimum = 0.0;
@@ -131,8 +130,7 @@ uint shown_face(uint level, ivec3 voxel, uint cell, uint chosen, vec3 direction)
 }
 
 #if SHOW == 1
-// A record has no albedo of its own where a finer level fills a clip level: that of a voxel of the
-// finer level stands for it.
+// Records that are filled from a finer level have no albedo: uses a record of the finer level.
 uint record_with_albedo(uint level, ivec3 voxel, uint face, uint words)
 {
     bool bare = true;
@@ -158,7 +156,7 @@ uint record_with_albedo(uint level, ivec3 voxel, uint face, uint words)
 }
 #endif
 
-// What a face shows; `words` is its record.
+// Value of a face; `words` is its record.
 vec3 face_color(uint level, ivec3 voxel, uint face, uint words)
 {
 #if SHOW == 0
@@ -177,7 +175,7 @@ vec3 face_color(uint level, ivec3 voxel, uint face, uint words)
 #endif
 }
 
-// Dark edges where voxels are large enough for them, and a tone for each axis.
+// Dark edges on large enough voxels, and a shade per axis.
 float block_shade(voxel_hit hit, float pixels_per_voxel)
 {
     vec3 rim = max(min(hit.sub_voxel_position, 1.0 - hit.sub_voxel_position), vec3(hit.side));
@@ -187,7 +185,7 @@ float block_shade(voxel_hit hit, float pixels_per_voxel)
     return tone * (1.0 - strength * line);
 }
 
-// There is nothing of the kind here.
+// Pattern for missing data.
 vec3 checker(ivec3 voxel)
 {
     return ((voxel.x + voxel.y + voxel.z) & 1) != 0 ? vec3(0.34, 0.0, 0.3) : vec3(0.22, 0.0, 0.19);

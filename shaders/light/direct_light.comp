@@ -1,6 +1,6 @@
-// Direct light of punctual lights and planar emitters. In: G-buffer, lights, shadow maps;
-// RAY_SHADOWS: what rays have found to arrive from lights that have a size. Out: radiance in
-// cd/m^2, added to what ADDED_TO says.
+// Direct light from punctual and area lights. In: G-buffer, lights, shadow maps; RAY_SHADOWS:
+// traced visibility of area and sphere lights. Out: radiance in cd/m^2, added to the environment
+// pass's (FIRST 0), to emission (1), or alone (2: the debug view of direct light).
 #include "lib/gbuffer.glsl"
 #include "lib/lighting.glsl"
 #include "lib/radiance_buffer.glsl"

@@ -1,5 +1,5 @@
-// Environment as background and ambient light; first of the passes that write radiance, so it adds
-// emission too. In: G-buffer, environment. Out: radiance in cd/m^2.
+// Environment as background and ambient light. The first pass to write radiance, so it adds
+// emission, too. In: G-buffer, environment. Out: radiance in cd/m^2.
 #include "lib/gbuffer.glsl"
 #include "lib/environment.glsl"
 #include "lib/radiance_buffer.glsl"
@@ -15,7 +15,7 @@ void main()
     vec3 sum = s.emission;
     if (s.shading == SHADE_BACKGROUND)
         sum = environment_radiance(-s.view);
-#if !INDIRECT_DIFFUSE // whose cones see the environment
+#if !INDIRECT_DIFFUSE // whose cones sample the environment
     else if (s.shading != SHADE_UNLIT)
         sum += environment_light(s);
 #endif

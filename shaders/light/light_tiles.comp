@@ -1,7 +1,7 @@
-// Finds the lights that can reach each tile of LIGHT_TILE_EDGE^2 pixels, as a bit mask: no limit on
-// lights per tile, and an order that does not depend on timing. In: depth, lights. Out: masks.
-// Tests each light's sphere against the tile's frustum between its nearest and farthest depth
-// (Olsson and Assarsson 2011, "Tiled Shading").
+// Light culling: a bit mask per tile of LIGHT_TILE_EDGE^2 pixels, so there is no limit of lights
+// per tile and no dependence on timing. In: depth, lights. Out: masks. Tests each light's sphere
+// against the tile's frustum between its nearest and farthest depth (Olsson and Assarsson 2011,
+// "Tiled Shading").
 #include "lib/frame.glsl"
 #include "shared/light_block.h"
 
@@ -22,7 +22,7 @@ layout(std430, binding = BIND_LIGHT_MASKS) writeonly buffer light_mask_storage
 shared uint nearest_bits;
 shared uint farthest_bits;
 
-// Depths are positive, so that their bits order as they do.
+// Depths are positive, so their bits compare like integers.
 void reduce_depths(uvec2 tile)
 {
     if (gl_LocalInvocationIndex == 0u) {
@@ -65,7 +65,7 @@ void main()
     reduce_depths(tile);
     bool empty = nearest_bits == 0u;
 #if TRANSPARENCY
-    // Transparent layers may lie anywhere before the opaque depth.
+    // Transparent layers may lie anywhere in front of the opaque depth.
     float near_distance = 0.0;
     float far_distance = 3.0e38;
     empty = false;
@@ -80,7 +80,7 @@ void main()
     vec3 planes[4];
     for (int i = 0; i < 4; i++) {
         planes[i] = normalize(cross(corners[i], corners[(i + 1) & 3]));
-        // Outwards: away from the opposite corner.
+        // Outward: away from the opposite corner.
         if (dot(planes[i], corners[(i + 2) & 3]) > 0.0)
             planes[i] = -planes[i];
     }

@@ -1,8 +1,8 @@
-// Blended and transmissive layers over the opaque picture, per pixel in order of depth, in the
-// tiles that hold any (one group each). In: tiles, lists of fragments, geometry, materials, lights.
+// Shades blended and transmissive layers over the opaque image, per pixel in depth order, in the
+// tiles that hold any (one group each). In: tiles, fragment lists, geometry, materials, lights.
 // Out: radiance in cd/m^2.
 //
-// A layer covers `alpha` of the pixel. Its diffuse part lets the share `transmission` through
+// A layer covers `alpha` of the pixel. Its diffuse part transmits the fraction `transmission`
 // unscattered, tinted by base colour (KHR_materials_transmission, thin-walled) and absorbed along
 // its thickness (KHR_materials_volume); its specular part reflects.
 #define CELLS_ACCESS readonly
@@ -17,23 +17,23 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
-    uint fragment_count;    // met by rasterisation
-    uint fragment_capacity; // room for them
+    uint fragment_count;    // rasterized
+    uint fragment_capacity; // size of the pool
     uint fragment_unused[2];
     uint fragment_words[];
 };
 
 layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 {
-    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_count; // groups in x of the indirect dispatch; then y and z
     uint tile_groups_y;
     uint tile_groups_z;
     uint tile_unused;
     uint tiles[];
 };
 
-// Collects the ids of a pixel's nearest layers, farthest first. Ties go by id, so that the result
-// does not depend on the order in which fragments arrived.
+// Collects the ids of a pixel's nearest layers, farthest first. Equal depths sort by id, so that
+// the result does not depend on the order of fragments.
 uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
 {
     float distances[MAX_BLENDED_LAYERS];
@@ -51,7 +51,7 @@ uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
         if (count == MAX_BLENDED_LAYERS) {
             if (along > distances[0] || (along == distances[0] && id > layers[0]))
                 continue;
-            for (uint i = 1u; i < MAX_BLENDED_LAYERS; i++) { // drop the farthest
+            for (uint i = 1u; i < MAX_BLENDED_LAYERS; i++) { // drops the farthest
                 distances[i - 1u] = distances[i];
                 layers[i - 1u] = layers[i];
             }
@@ -87,8 +87,8 @@ vec3 transparent_layer_radiance(surface s, transparent_layer through, uvec2 pixe
     if (s.shading == SHADE_UNLIT)
         return s.emission * through.alpha;
     vec3 sum = s.emission;
-    // The transmitted share of the diffuse part does not reflect: a surface with the reduced base
-    // colour says the same, and leaves the metallic part alone.
+    // The transmitted fraction of the diffuse part does not reflect: reduces the base colour, but
+    // not of the metallic part.
     s.base_color *= 1.0 - through.transmission * (1.0 - s.metallic);
 #if PUNCTUAL_LIGHTS || AREA_LIGHTS
     sum += direct_light(s, pixel);
@@ -113,16 +113,16 @@ vec3 transparent_layer_radiance(surface s, transparent_layer through, uvec2 pixe
 }
 
 #if REFRACTION
-// Light through the volume below a surface, by one cone along the refracted ray, as wide as
-// roughness makes it (KHR_materials_volume). Both faces of a slab bend the ray alike, so it is
-// taken to leave the volume as it came; where it cannot enter, it is reflected.
+// Light through the volume below a surface, by one cone along the refracted ray, as wide as its
+// roughness (KHR_materials_volume). Both faces of a slab refract alike, so the ray leaves in its
+// original direction; on total internal reflection it is mirrored.
 vec3 refracted_light(surface s, transparent_layer through)
 {
     float ratio = 1.0 / max(through.ior, 1.0);
     vec3 inside = refract(-s.view, s.normal, ratio);
     if (dot(inside, inside) == 0.0)
         inside = reflect(-s.view, s.normal);
-    // The lobe of transmission narrows as the interface bends less.
+    // The transmission lobe narrows as the interface refracts less.
     float roughness = s.roughness * clamp(2.0 * (1.0 - ratio), 0.0, 1.0);
     vec3 leaving = s.position + inside * through.thickness_m;
     return trace_specular(leaving, -s.geometric_normal * 0.5, false, normalize(inside), roughness);

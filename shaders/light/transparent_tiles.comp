@@ -1,20 +1,20 @@
-// Lists the tiles of GROUP_EDGE^2 pixels that hold transparent fragments, for indirect dispatch.
-// In: heads of the pixels' lists. Out: dispatch arguments and tile numbers, in any order.
+// Lists the tiles of GROUP_EDGE^2 pixels with transparent fragments, for indirect dispatch. In:
+// heads of the pixels' lists. Out: dispatch arguments and tile numbers, in any order.
 #include "lib/frame.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
 layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
-    uint fragment_count;    // met by rasterisation
-    uint fragment_capacity; // room for them
+    uint fragment_count;    // rasterized
+    uint fragment_capacity; // size of the pool
     uint fragment_unused[2];
     uint fragment_words[];
 };
 
 layout(std430, binding = BIND_TILES) buffer tile_storage
 {
-    uint tile_count; // groups in x of the indirect dispatch; then in y and z
+    uint tile_count; // groups in x of the indirect dispatch; then y and z
     uint tile_groups_y;
     uint tile_groups_z;
     uint tile_unused;

@@ -1,7 +1,6 @@
-// Automatic exposure from the luminance histogram. In: radiance. Out: exposure scale.
-// EXPOSURE_HISTOGRAM counts log2 luminances; EXPOSURE_MEAN (one group) takes their mean between two
-// percentiles and maps it to middle grey. Counts are integers, so the result does not depend on
-// timing.
+// Automatic exposure from a luminance histogram. In: radiance. Out: exposure scale. STAGE 0 counts
+// log2 luminances; STAGE 1 (one group) takes their mean between two percentiles and maps it to
+// middle grey. Integer counts do not depend on timing.
 #include "lib/radiance_buffer.glsl"
 #include "shared/display.h"
 
@@ -25,7 +24,7 @@ void main()
     for (uint i = gl_LocalInvocationIndex; i < HISTOGRAM_BINS; i += GROUP_EDGE * GROUP_EDGE)
         bins[i] = 0u;
     barrier();
-    // Each invocation looks at one of 2 x 2 pixels: plenty for a mean.
+    // Samples one of each 2 x 2 pixels: plenty for a mean.
     uvec2 pixel = gl_GlobalInvocationID.xy * 2u;
     if (all(lessThan(pixel, frame.render_size))) {
         float value = luminance(radiance[pixel.y * frame.render_size.x + pixel.x].rgb);

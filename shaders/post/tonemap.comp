@@ -1,9 +1,8 @@
-// Radiance to displayed pixels. In: radiance, exposure. Out, by OUTPUT:
-//   OUTPUT_YCBCR: planar full-range 4:2:0 (ITU-R BT.601 as JFIF has it); 8 x 2 pixels an invocation
-//   OUTPUT_RGBA8: 1 pixel an invocation
-//   OUTPUT_LINEAR: four floats, unexposed; likewise
-// Scales bilinearly where the rendered size is not the shown one. DISPLAY_READY: values are shown
-// as they are (debug views). BLANK: plain grey, for debug views that have nothing to show.
+// Radiance to output pixels. In: radiance, exposure. Out, by OUTPUT:
+//   0: planar full-range YCbCr 4:2:0 (ITU-R BT.601 as JFIF has it); an invocation does 8 x 2 pixels
+//   1: RGBA8, 2: four floats, linear and unexposed; an invocation does 1 pixel
+// Scales bilinearly if the rendered size is not the output size. DISPLAY_READY: shows values as
+// they are (debug views). BLANK: plain grey, for debug views that have nothing to show.
 #include "lib/display.glsl"
 #include "lib/radiance_buffer.glsl"
 #include "shared/display.h"
@@ -66,7 +65,7 @@ void main()
     if (any(greaterThanEqual(first, frame.output_size)))
         return;
     vec4 cb, cr;
-    vec4 luma[4]; // two words of each of two rows
+    vec4 luma[4]; // two words for each of two rows
     for (uint i = 0u; i < 4u; i++) {
         vec3 sum = vec3(0.0);
         for (uint j = 0u; j < 4u; j++) {

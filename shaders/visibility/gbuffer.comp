@@ -1,4 +1,4 @@
-// Turns visibility ids into surface attributes. In: ids, depth, geometry, materials. Out: G-buffer.
+// Loads surfaces from visibility ids. In: ids, depth, geometry, materials. Out: G-buffer.
 #include "lib/geometry.glsl"
 #include "lib/gbuffer.glsl"
 

@@ -1,7 +1,7 @@
-// Writes the visibility id of the triangle (colour), after the alpha test where there is a mask.
-// LIST: instead appends the fragment to its pixel's list of transparent layers.
+// Writes the triangle's visibility id (colour), after the alpha test of masked materials. LIST:
+// instead appends the fragment to its pixel's list of transparent layers.
 #if SHADOW_VIEW
-// Shadow maps are shared by views of different quality, so they must not depend on it.
+// Views of different quality share shadow maps, which must not depend on it.
 #define TEXTURE_ANISOTROPY 1.0
 #endif
 #include "lib/material.glsl"
@@ -32,10 +32,10 @@ layout(early_fragment_tests) in;
 
 layout(std430, binding = BIND_FRAGMENTS) buffer fragment_storage
 {
-    // `fragment_words`: heads of the pixels' lists (0: empty), then fragments: next + 1, visibility
+    // `fragment_words`: head of each pixel's list (0: empty), then fragments: next + 1, visibility
     // id.
-    uint fragment_count;    // met by rasterisation
-    uint fragment_capacity; // room for them
+    uint fragment_count;    // rasterized
+    uint fragment_capacity; // size of the pool
     uint fragment_unused[2];
     uint fragment_words[];
 };

@@ -1,5 +1,5 @@
-// Places vertices. In: position (local, metres), texture coordinates, the draw's record. Out: clip
-// space.
+// Transforms vertices. In: position (local, metres), texture coordinates, the draw's record. Out:
+// clip space.
 #include "shared/slots.h"
 #include "shared/vertex.h"
 
@@ -10,7 +10,7 @@ layout(location = 3) in vec4 clip_row_y;
 layout(location = 4) in vec4 clip_row_z;
 layout(location = 5) in vec4 clip_row_w;
 layout(location = 6) in float alpha;
-layout(location = 7) in uint triangle; // of the primitive, if this vertex is its first
+layout(location = 7) in uint triangle; // of the primitive, if this vertex is the first
 layout(location = 8) in uvec2 numbers; // first visibility id, material
 
 layout(location = 0) flat out uvec2 fragment_numbers; // visibility id, material
