@@ -1,16 +1,16 @@
-// Finds emissive surfaces that light their surroundings: every emissive triangle is a Lambertian
-// source, and two triangles of one plane that share an edge make a parallelogram or a quad.
+// Finds planar emitters: every emissive triangle is a Lambertian source, and two coplanar triangles
+// that share an edge form a parallelogram or quad.
 #include <math.h>
 #include <string.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/scene/scene.h"
 
-// Emissive primitives of more triangles (lights with shape) are not split up into planar emitters.
+// Emissive primitives of more triangles (curved emitters) are not split into planar emitters.
 #define MAX_EMITTER_TRIANGLES 12u
-// Emitters of at least this share of the surface of the scene's bounds are large: with global
-// illumination their light is gathered by cones, which see as much of them as is not hidden, while
-// a shadow map from their centre would not.
+// Emitters of at least this fraction of the surface of the scene's bounds are large: with global
+// illumination cones gather their light and see the unoccluded part, which a shadow map from the
+// centre would not.
 #define LARGE_FRACTION 0.03f
 
 static void emitted_radiance(const struct gpu_scene *gpu_scene,
@@ -60,7 +60,8 @@ static bool join_quad(float first[3][3], float second[3][3], float out_corners[4
         return false;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
-            // The shared edge runs i -> i+1 in the first and j -> j+1 backwards in the second.
+            // The shared edge runs i -> i+1 in the first triangle and j -> j+1, reversed, in the
+            // second.
             if (glm_vec3_distance(first[i], second[(j + 1) % 3]) > 1e-4f * size ||
                 glm_vec3_distance(first[(i + 1) % 3], second[j]) > 1e-4f * size)
                 continue;

@@ -1,4 +1,4 @@
-// The tree is Embree's (surface area heuristic), laid out in order of depth.
+// Builds with Embree (surface area heuristic); lays nodes out depth first.
 #include "renderer/gpu_scene/bvh.h"
 
 #include <embree3/rtcore.h>
@@ -10,20 +10,20 @@
 #include "renderer/scene/scene.h"
 
 #define MAX_LEAF_TRIANGLES 4u
-// Embree's own range.
+// Embree's limit.
 #define MAX_EXTENT 1e17
 
-// A triangle as rays meet it.
+// A triangle as stored for rays.
 struct flat_triangle {
     float corner[3]; // relative to the centre
     uint32_t id;     // visibility id
-    float edge_b[3]; // from there
-    float opacity;   // mean of a masked material
+    float edge_b[3]; // from the corner
+    float opacity;   // mean of the material's mask
     float edge_c[3];
     uint32_t flags; // BVH_LIT_DIRECTLY, BVH_ONE_SIDED
 };
 
-// What Embree's builder makes, from its own memory.
+// Output of Embree's builder, in its own memory.
 struct built_node {
     bool leaf;
     struct RTCBounds bounds[2]; // of the children
@@ -32,16 +32,16 @@ struct built_node {
     uint32_t triangles[MAX_LEAF_TRIANGLES];
 };
 
-// Everything on its way to the GPU.
+// Build state.
 struct bvh_work {
     const struct gpu_scene *gpu_scene;
     float center[3];
     uint32_t triangle_count;
-    struct flat_triangle *triangles; // in the order of the document
+    struct flat_triangle *triangles; // in the scene's order
     struct RTCBuildPrimitive *boxes;
     uint32_t node_count, sorted_count;
     uint32_t (*nodes)[4];         // texels
-    struct flat_triangle *sorted; // in the order of the leaves
+    struct flat_triangle *sorted; // in leaf order
 };
 
 static bool blocks_light(const struct gpu_scene_instance *instance)
@@ -49,7 +49,7 @@ static bool blocks_light(const struct gpu_scene_instance *instance)
     return instance->visible && instance->group / DRAW_CULL_COUNT != DRAW_TRANSPARENT;
 }
 
-// Whether its emission reaches others as that of planar emitters.
+// Whether its emission is sampled directly as planar emitters.
 static bool emits_directly(const struct gpu_scene_instance *instance)
 {
     return instance->emits_directly && !instance->large_emitter;
@@ -62,7 +62,7 @@ static const struct scene_material *material_of(const struct gpu_scene *gpu_scen
     return &scene->materials[scene->primitives[instance->primitive].material];
 }
 
-// Share of rays that its triangles stop.
+// Fraction of rays that its triangles stop.
 static float opacity_of(const struct gpu_scene *gpu_scene,
                         const struct gpu_scene_instance *instance)
 {
@@ -75,7 +75,7 @@ static float opacity_of(const struct gpu_scene *gpu_scene,
            (image == SCENE_NONE ? 1.0f : space->image_slots[image].mean[3]);
 }
 
-// Of all that the tree is made from.
+// Hash of everything that the BVH is built from.
 static uint64_t content_key(const struct gpu_scene *gpu_scene)
 {
     const struct scene_revisions *now = &gpu_scene->scene->revisions;
@@ -116,7 +116,7 @@ static void to_scene_corner(const struct bvh_work *work, const float matrix[16],
                     (double)work->center[axis];
 }
 
-// Adds a triangle unless it has no area or reaches too far.
+// Adds a triangle unless it has no area or exceeds MAX_EXTENT.
 static void add_triangle(struct bvh_work *work, const double corners[3][3],
                          const struct flat_triangle *traits)
 {
@@ -134,7 +134,7 @@ static void add_triangle(struct bvh_work *work, const double corners[3][3],
         triangle.edge_c[axis] = (float)edges[1][axis];
         for (int i = 0; i < 3; i++)
             extent = fmax(extent, fabs(corners[i][axis]));
-        // Rounding must not leave a corner outside.
+        // Rounds outwards, so that no corner is outside.
         lower[axis] = nextafterf(lower[axis], -INFINITY);
         upper[axis] = nextafterf(upper[axis], INFINITY);
     }
@@ -149,7 +149,7 @@ static void add_triangle(struct bvh_work *work, const double corners[3][3],
     work->triangles[work->triangle_count++] = triangle;
 }
 
-// Whether a placement turns triangles over: their edges then change places.
+// Whether a transform mirrors triangles, which swaps their edges.
 static bool is_mirrored(const float m[16])
 {
     double cross[3] = {(double)m[5] * m[10] - (double)m[6] * m[9],
@@ -192,7 +192,7 @@ static bool collect_triangles(struct bvh_work *work)
         work->center[axis] = 0.5f * (gpu_scene->bounds_min[axis] + gpu_scene->bounds_max[axis]);
     work->triangles = malloc((maximum + 1) * sizeof(*work->triangles));
     work->sorted = malloc((maximum + 1) * sizeof(*work->sorted));
-    // Embree's primitives are aligned to their size.
+    // Embree requires primitives aligned to their size.
     work->boxes = aligned_alloc(32, (maximum + 1) * sizeof(*work->boxes));
     if (!work->triangles || !work->sorted || !work->boxes)
         return false;
@@ -245,7 +245,7 @@ static void write_floats(uint32_t texel[4], const float values[3], uint32_t word
 
 static uint32_t flatten(struct bvh_work *work, const struct built_node *node);
 
-// A child's word; its triangles go behind those before.
+// A child's word; appends the triangles of a leaf.
 static uint32_t flatten_child(struct bvh_work *work, const struct built_node *child)
 {
     if (!child)
@@ -258,7 +258,7 @@ static uint32_t flatten_child(struct bvh_work *work, const struct built_node *ch
     return BVH_LEAF | first << BVH_COUNT_BITS | child->count;
 }
 
-// Recursion goes as deep as the tree, BVH_MAX_DEPTH.
+// Recursion depth is that of the BVH, at most BVH_MAX_DEPTH.
 static uint32_t flatten(struct bvh_work *work, const struct built_node *node)
 {
     uint32_t number = work->node_count++;
@@ -279,7 +279,7 @@ static bool build(struct bvh_work *work)
 {
     RTCDevice device = rtcNewDevice(NULL);
     RTCBVH embree_bvh = device ? rtcNewBVH(device) : NULL;
-    // Inner nodes are fewer than leaves; the root is one even above a single leaf.
+    // There are fewer inner nodes than leaves; the root is a node even above a single leaf.
     work->nodes = calloc(((size_t)work->triangle_count + 1) * BVH_NODE_TEXELS, sizeof(uint32_t[4]));
     struct built_node *root = NULL;
     if (embree_bvh && work->nodes && work->triangle_count > 0) {
@@ -317,7 +317,7 @@ static bool build(struct bvh_work *work)
     return done;
 }
 
-// A texture of so many texels in rows; takes its size from `texels`, which has no padding.
+// Uploads rows of texels. The last row may be partial: `texels` has no padding.
 static struct gpu_texture *upload(struct gpu *gpu, const char *label, const void *texels,
                                   size_t count)
 {

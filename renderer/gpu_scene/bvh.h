@@ -1,4 +1,4 @@
-// A tree of boxes over a scene's triangles as the GPU reads it, for rays against the real geometry.
+// BVH over a scene's triangles in GPU textures.
 #ifndef VOXCAST_RENDERER_GPU_SCENE_BVH_H
 #define VOXCAST_RENDERER_GPU_SCENE_BVH_H
 
@@ -7,15 +7,15 @@
 struct gpu_scene;
 
 struct bvh {
-    struct gpu_texture *nodes;     // layouts: see TREE_ in shaders/shared/bvh.h
-    struct gpu_texture *triangles; // in world space, relative to `center`
+    struct gpu_texture *nodes;     // layouts: BVH_ in shaders/shared/bvh.h
+    struct gpu_texture *triangles; // world, relative to `center`
     float center[3];
     uint32_t triangle_count;
-    uint64_t key; // of what it was made from
+    uint64_t key; // hash of what it was built from
 };
 
-// Of the visible triangles that light does not pass through; degenerate ones are left out. Cost: a
-// build by all processors, some 0.1 s for 250,000 triangles. NULL when memory ends.
+// Builds from the visible triangles that block light; omits degenerate ones. Cost: all processors,
+// about 0.1 s for 250,000 triangles. NULL when memory runs out.
 struct bvh *bvh_create(const struct gpu_scene *gpu_scene);
 void bvh_destroy(struct bvh **bvh);
 

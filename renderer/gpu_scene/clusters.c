@@ -6,7 +6,7 @@
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/scene/scene.h"
 
-// A cone that is wider than this (cosine) tells nothing.
+// A cone wider than this (cosine) cannot cull anything.
 #define MIN_CONE_COSINE 0.1f
 #define NO_CONE         2.0f
 
@@ -28,7 +28,7 @@ static void bound_triangles(const struct scene *scene, const uint32_t *indices, 
     cluster->radius = sqrtf(squared);
 }
 
-// False for a triangle without area, which is never seen.
+// False for a triangle without area, which is never visible.
 static bool triangle_normal(const struct scene *scene, const uint32_t indices[3], vec3 out_normal)
 {
     vec3 u, v;
@@ -42,9 +42,9 @@ static bool triangle_normal(const struct scene *scene, const uint32_t indices[3]
     return true;
 }
 
-// The cone around all normals. A triangle faces away from the eye where the direction to it is
-// within 90 degrees of its normal; for all of a cone of half-angle t, within 90 degrees - t of the
-// axis: cutoff = cos(90 degrees - t) = sin t.
+// Cone around all normals. A triangle faces away if the direction from the eye is within 90 degrees
+// of its normal; for all normals of a cone of half-angle t, within 90 degrees - t of the axis:
+// cutoff = cos(90 degrees - t) = sin t.
 static void bound_normals(const struct scene *scene, const uint32_t *indices, uint32_t count,
                           struct gpu_scene_cluster *cluster)
 {

@@ -13,8 +13,8 @@ static uint32_t pack_snorm(float value)
     return (uint32_t)(int32_t)lrintf(clamped * 32767.0f) & 0xffffu;
 }
 
-// Octahedral, as octahedral_encode() in shaders/lib/frame.glsl; VERTEX_NO_DIRECTION for a vector
-// that has none.
+// Octahedral, as octahedral_encode() in shaders/lib/frame.glsl; VERTEX_NO_DIRECTION for zero or
+// non-finite vectors.
 static uint32_t pack_direction(const float v[3])
 {
     float sum = fabsf(v[0]) + fabsf(v[1]) + fabsf(v[2]);
@@ -29,7 +29,8 @@ static uint32_t pack_direction(const float v[3])
     return pack_snorm(x) | pack_snorm(y) << 16;
 }
 
-// The document's vertices in the words that shaders read; from malloc, NULL when memory ends.
+// Packs the scene's vertices into the words that shaders read. From malloc; NULL when memory runs
+// out.
 static uint32_t *pack_vertices(const struct scene *scene)
 {
     uint32_t *words = malloc(((size_t)scene->vertex_count * VERTEX_WORDS + 1) * sizeof(*words));
@@ -63,8 +64,8 @@ static uint32_t count_instances(const struct scene *scene)
     return count;
 }
 
-// Gives each instance a run of visibility ids that starts at a block boundary, and tells for each
-// block whose it is.
+// Gives each instance a run of visibility ids that starts at a block boundary, and uploads the
+// owner of each block.
 static bool upload_id_blocks(struct gpu_scene *gpu_scene)
 {
     const uint32_t block_size = 1u << ID_BLOCK_BITS;
@@ -179,7 +180,7 @@ static void transform_instance(struct gpu_scene *gpu_scene, struct gpu_scene_ins
     for (int column = 0; column < 3; column++)
         instance->scale =
             fmaxf(instance->scale, glm_vec3_norm2((float *)node->world_from_local + 4 * column));
-    // Axes of a sheared placement can add up.
+    // The axes of a sheared transform can add up.
     instance->scale = sqrtf(3.0f * instance->scale);
     double low[3], high[3];
     placement_transform_box(instance->world_from_local, primitive->bounds_min,
@@ -196,7 +197,7 @@ static void transform_instance(struct gpu_scene *gpu_scene, struct gpu_scene_ins
     }
 }
 
-// FNV-1a over what decides whether and how an instance casts a shadow, beside its placement.
+// FNV-1a of what decides whether and how instances cast shadows, except their transforms.
 static uint64_t hash_casters(const struct gpu_scene *gpu_scene)
 {
     const struct scene *scene = gpu_scene->scene;

@@ -7,7 +7,7 @@
 #include "renderer/gpu_scene/bvh.h"
 #include "renderer/scene/scene.h"
 
-// Where the scene lies, rounded to multiples of a power of two about as large as it is.
+// The scene's position, rounded to multiples of a power of two about as large as the scene.
 static void choose_origin(struct gpu_scene *gpu_scene)
 {
     double low[3], high[3], extent = 0.0;

@@ -1,4 +1,4 @@
-// The light tables and the views of their shadow maps.
+// Light tables and shadow views.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +13,7 @@ struct light_builder {
     struct gpu_scene *gpu_scene;
     struct shadow_view_block views[MAX_SHADOW_LAYERS];
     uint32_t layers;
-    const struct light_block
-        *owners[MAX_SHADOW_LAYERS]; // of the light whose layers begin here; or NULL
+    const struct light_block *owners[MAX_SHADOW_LAYERS]; // light whose layers begin here, or NULL
 };
 
 // Reversed, infinite Z: depth = near / distance.
@@ -53,7 +52,7 @@ static void add_perspective_view(struct light_builder *builder, const float orig
 
 static void add_cube_views(struct light_builder *builder, const float origin[3])
 {
-    // In the order of cube_face() in shaders/lib/shadow.glsl.
+    // In the order of project_to_cube() in shaders/lib/shadow.glsl.
     static const float axes[6][2][3] = {
         {{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 0, 1}},
         {{0, -1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}},  {{0, 0, -1}, {0, 1, 0}},
@@ -76,7 +75,7 @@ void gpu_scene_directional_view(const struct gpu_scene *gpu_scene, const float a
     placement_transform_box((const float *)view_from_world, box_min, box_max, low, high);
     placement_transform_box((const float *)view_from_world, gpu_scene->bounds_min,
                             gpu_scene->bounds_max, scene_low, scene_high);
-    // A flat scene still needs some depth, or the smallest bias would leave it.
+    // A flat scene still needs some depth, or the smallest bias would exceed it.
     double pad = 0.01 * gpu_scene->diagonal_m;
     low[2] = scene_low[2] - pad;
     high[2] = scene_high[2] + pad;
@@ -90,7 +89,7 @@ void gpu_scene_directional_view(const struct gpu_scene *gpu_scene, const float a
     clip_from_view[1][1] = (float)(2.0 / size[1]);
     clip_from_view[3][0] = (float)(-(high[0] + low[0]) / size[0]);
     clip_from_view[3][1] = (float)(-(high[1] + low[1]) / size[1]);
-    // View z is towards the sun: its largest value gets depth 1.
+    // View z points to the sun: its maximum gets depth 1.
     clip_from_view[2][2] = (float)(1.0 / size[2]);
     clip_from_view[3][2] = (float)(0.5 - 0.5 * (high[2] + low[2]) / size[2]);
     clip_from_view[3][3] = 1.0f;
@@ -133,8 +132,7 @@ static void fill_light_block(struct light_block *block, const struct gpu_scene *
     block->shadow.light_id = id;
 }
 
-// Whether one shadow map does for both: the same kind of light in the same place, which shines the
-// same way.
+// Whether two lights can share a shadow map: same type, position and direction.
 static bool has_same_shadow(const struct light_block *a, const struct light_block *b)
 {
     bool turned = memcmp(a->direction, b->direction, sizeof(vec3)) != 0 ||
@@ -208,7 +206,7 @@ static void add_area_light_shadow(struct light_builder *builder, struct area_lig
     light->shadow.first_view = builder->layers;
     light->shadow.view_count = 6;
     builder->gpu_scene->counts.point_shadows++;
-    // A little before the emitter, so that it does not shade itself.
+    // In front of the emitter, so that it does not shadow itself.
     vec3 origin;
     float lift = 1e-3f * sqrtf(light->area_m2);
     glm_vec3_scale(light->normal, lift, origin);
@@ -216,7 +214,7 @@ static void add_area_light_shadow(struct light_builder *builder, struct area_lig
     add_cube_views(builder, light->center);
 }
 
-// Keeps rendered layers whose view is as it was; when any caster changed, all are stale.
+// Keeps rendered layers whose view has not changed; if any caster has changed, all are stale.
 static bool keep_shadow_map(struct gpu_scene *gpu_scene, const struct light_builder *builder)
 {
     uint32_t layers = builder->layers;
@@ -258,7 +256,8 @@ bool gpu_scene_upload_lights(struct gpu_scene *gpu_scene)
         counts->point_shadows = 0;
         gpu_scene->directional_light = NO_SHADOW;
         counts->area_lights = gpu_scene_find_area_lights(gpu_scene, area_lights);
-        // Shadow maps go to suns first, then to planar emitters, then to lights as listed.
+        // Shadow layers go to directional lights first, then to area lights, then to the rest in
+        // order.
         for (int round = 0; round < 2; round++) {
             for (uint32_t i = 0; i < scene->light_count; i++) {
                 const struct scene_light *light = &scene->lights[i];

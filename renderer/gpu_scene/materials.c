@@ -1,4 +1,4 @@
-// The material table and the textures that it refers to.
+// The material table and its textures.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 
 static_assert(TEXTURE_SLOTS == SCENE_TEXTURE_SLOT_COUNT, "shaders and scene agree on slots");
 
-// Reflectance at normal incidence; glTF keeps IOR 0 for "reflects everything".
+// Reflectance at normal incidence; in glTF IOR 0 means "reflects everything".
 static float f0_from_ior(float ior)
 {
     if (ior <= 0.0f)

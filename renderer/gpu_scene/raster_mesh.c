@@ -1,6 +1,6 @@
-// The vertices and indices that are rasterised: what the visibility pass needs of a vertex, packed,
-// and each triangle with a first (provoking) vertex of its own that carries the triangle's number.
-// A flat attribute costs nothing where gl_PrimitiveID makes a software renderer copy every vertex.
+// Vertices and indices for rasterization: the packed attributes of the visibility pass, with each
+// triangle's provoking (first) vertex its own, since it carries the triangle's number. A flat
+// attribute costs nothing, while gl_PrimitiveID makes a software renderer copy every vertex.
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ struct mesh_builder {
     uint32_t count;
     uint32_t capacity;
     uint32_t *indices;
-    uint32_t *placed; // by scene vertex: where it is in `vertices`, or UNUSED
+    uint32_t *placed; // per scene vertex: index in `vertices`, or UNUSED
 };
 
 static bool append_vertex(struct mesh_builder *builder, uint32_t scene_vertex, uint32_t *out_index)
@@ -40,7 +40,7 @@ static bool append_vertex(struct mesh_builder *builder, uint32_t scene_vertex, u
     return true;
 }
 
-// Turns the triangle so that its first vertex provokes no other one; copies a vertex if all do.
+// Rotates the triangle so that its first vertex provokes no other one; copies a vertex if all do.
 static bool add_triangle(struct mesh_builder *builder, const uint32_t corners[3], uint32_t number,
                          uint32_t *out_indices)
 {

@@ -14,10 +14,10 @@ struct shadow_map {
     uint64_t epoch;
     struct gpu_texture *texture;
     bool cascade_taken[MAX_VIEW_CASCADES];
-    uint32_t lights;   // layers 0 .. lights - 1 exist for lights
-    uint32_t cascades; // and as many more for cascades
+    uint32_t lights;   // layers 0 to lights - 1 exist for lights
+    uint32_t cascades; // and this many for cascades
     struct gpu_framebuffer
-        *framebuffers[MAX_LAYERS]; // lights first, cascades from MAX_SHADOW_LAYERS
+        *framebuffers[MAX_LAYERS]; // lights from 0, cascades from MAX_SHADOW_LAYERS
 };
 
 struct shadow_map *shadow_map_create(struct gpu *gpu, uint32_t edge)

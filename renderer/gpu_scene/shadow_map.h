@@ -1,6 +1,5 @@
-// One depth texture array for all shadow maps: layers of the scene's lights first, then layers that
-// views take for their cascades. One array, because a software renderer pays for every sampler that
-// a shader names.
+// One depth texture array for all shadow maps: layers of the scene's lights, then layers of views'
+// cascades. One array, because a software renderer pays for every sampler that a shader declares.
 #ifndef VOXCAST_RENDERER_GPU_SCENE_SHADOW_MAP_H
 #define VOXCAST_RENDERER_GPU_SCENE_SHADOW_MAP_H
 
@@ -8,22 +7,22 @@
 
 struct shadow_map;
 
-// NULL when memory ends. No texture is made before there is a layer.
+// NULL when memory runs out. Creates no texture before the first layer is reserved.
 struct shadow_map *shadow_map_create(struct gpu *gpu, uint32_t edge);
 void shadow_map_destroy(struct shadow_map **map);
 
-// Makes at least `layers` light layers. False when GPU memory ends.
+// Reserves at least `layers` light layers. False when GPU memory runs out.
 bool shadow_map_reserve_lights(struct shadow_map *map, uint32_t layers);
 
-// Takes a number for a cascade of a view, or gives it back. UINT32_MAX when GPU memory ends.
+// Reserves or returns the number of a view's cascade. UINT32_MAX when GPU memory runs out.
 uint32_t shadow_map_take_cascade(struct shadow_map *map);
 void shadow_map_give_cascade(struct shadow_map *map, uint32_t cascade);
 
 // Layer of a cascade in the texture; changes with the epoch.
 uint32_t shadow_map_cascade_layer(const struct shadow_map *map, uint32_t cascade);
 
-// Counts the times that the texture was made anew and lost its contents. Whoever drew a layer
-// compares this with what it was then.
+// Counts how often the texture was recreated and lost its contents. Store it with what was
+// rendered, and render again when it differs.
 uint64_t shadow_map_epoch(const struct shadow_map *map);
 
 // NULL while there is no layer.

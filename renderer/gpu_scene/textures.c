@@ -1,4 +1,4 @@
-// Pictures into texture arrays: one array per power-of-two edge and colour space.
+// Images in texture arrays: one array per power-of-two edge and colour space.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +18,8 @@
 #define MAX_CLASS_EDGE_LOG2    12 // 4096 texels
 #define MAX_SOFTWARE_EDGE_LOG2 11
 
-// On a software renderer every class costs each pixel, whether it lies in it or not: small pictures
-// are enlarged into the next class as long as that takes no more memory than this.
+// On a software renderer every class costs every pixel, so small images are enlarged into the next
+// class as long as that takes no more memory than this.
 #define MAX_SOFTWARE_ENLARGED_BYTES (96u << 20)
 
 struct texture_class {
@@ -48,8 +48,8 @@ static uint64_t class_bytes(uint32_t edge_log2, uint32_t layers)
     return ((uint64_t)4 << (2 * edge_log2)) * 4 / 3 * layers;
 }
 
-// Turns a count of pictures per edge into classes, largest first: pictures of a merged edge go to
-// the next larger class. `out_class_of` tells by edge.
+// Merges a count of images per edge into classes, largest first; images of a merged edge use the
+// next larger class. `out_class_of` maps edge to class.
 static uint32_t choose_classes(uint32_t counts[MAX_CLASS_EDGE_LOG2 + 1], bool software,
                                struct texture_class classes[MAX_CLASSES_PER_SPACE],
                                uint32_t out_class_of[MAX_CLASS_EDGE_LOG2 + 1])
@@ -78,7 +78,7 @@ static float linear_from_srgb(float value)
 static void compute_mean(const struct image *image, bool color, float out_mean[4])
 {
     uint64_t count = (uint64_t)image->width * image->height;
-    uint64_t step = count > 4096 ? count / 4096 : 1; // an estimate will do
+    uint64_t step = count > 4096 ? count / 4096 : 1; // an estimate is enough
     double sum[4] = {0};
     uint64_t taken = 0;
     for (uint64_t i = 0; i < count; i += step, taken++)
@@ -90,7 +90,7 @@ static void compute_mean(const struct image *image, bool color, float out_mean[4
         out_mean[c] = taken ? (float)(sum[c] / (double)taken) : 1.0f;
 }
 
-// Writes an image into a layer, scaled to the class's edge.
+// Writes an image to a layer, scaled to the class's edge.
 static bool write_layer(struct gpu_texture *texture, uint32_t layer, const struct image *image,
                         bool color)
 {
@@ -111,7 +111,7 @@ static bool write_layer(struct gpu_texture *texture, uint32_t layer, const struc
     return true;
 }
 
-// Marks the images that textures of the space refer to, and counts them by edge.
+// Marks the images that the space's textures use, and counts them by edge.
 static void find_uses(const struct gpu_scene *gpu_scene, int space_number,
                       uint32_t out_counts[MAX_CLASS_EDGE_LOG2 + 1])
 {
@@ -131,8 +131,8 @@ static void find_uses(const struct gpu_scene *gpu_scene, int space_number,
 static bool create_arrays(struct gpu_scene *gpu_scene, struct texture_space *space, bool color,
                           const struct texture_class *classes)
 {
-    // One level instead of two halves the cost on a CPU; shaders dither the choice, so that steps
-    // between levels do not show.
+    // One mip level instead of two halves the cost on a CPU; shaders dither the level to hide the
+    // steps.
     bool software = gpu_get_info(gpu_scene->gpu)->software;
     for (uint32_t i = 0; i < space->class_count; i++) {
         space->classes[i] = gpu_texture_create(
