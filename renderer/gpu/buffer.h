@@ -6,12 +6,12 @@
 
 enum gpu_buffer_kind {
     GPU_BUFFER_STATIC,   // written by gpu_buffer_write() or by shaders
-    GPU_BUFFER_READBACK, // mapped for reading all its life
+    GPU_BUFFER_READBACK, // mapped for reading throughout its life
 };
 
-// `label` is kept as the GL object label and counts in gpu_memory_bytes(). Contents start as
-// `data` or zero. A size of 0 is raised to 16 bytes, so that it can be bound. NULL when GL is out
-// of memory.
+// `label` becomes the GL object label and is counted by gpu_memory_bytes(). Contents start as
+// `data`, or zero. A size of 0 is raised to 16 bytes, so that the buffer can be bound. NULL when GL
+// runs out of memory.
 struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gpu_buffer_kind kind,
                                      size_t size_bytes, const void *data);
 void gpu_buffer_destroy(struct gpu_buffer **buffer);
@@ -25,15 +25,15 @@ void gpu_buffer_copy(struct gpu_buffer *target, size_t target_offset_bytes,
                      const struct gpu_buffer *source, size_t source_offset_bytes,
                      size_t size_bytes);
 
-// Copies a buffer's bytes to host memory and waits for the GPU: for tests and small results.
+// Copies bytes to host memory; waits for the GPU. For tests and small results.
 void gpu_buffer_read(const struct gpu_buffer *buffer, size_t offset_bytes, size_t size_bytes,
                      void *out_data);
 
-// The mapping of a GPU_BUFFER_READBACK; read it once a fence after the copy is done.
+// Mapping of a GPU_BUFFER_READBACK; valid once a fence after the copy has signalled.
 const void *gpu_buffer_mapping(const struct gpu_buffer *buffer);
 
-// The buffer if it exists and is large enough, else a new one in its place. False when out of
-// memory (*buffer is then NULL).
+// Keeps the buffer if it is large enough, else replaces it. False when out of memory (*buffer is
+// then NULL).
 bool gpu_buffer_ensure(struct gpu *gpu, struct gpu_buffer **buffer, const char *label,
                        enum gpu_buffer_kind kind, size_t size_bytes);
 

@@ -1,7 +1,7 @@
 // Opens a headless EGL context: a device-platform display (NVIDIA, Mesa) or a surfaceless one.
 //
-// A device has one display in the whole program, which eglTerminate() ends for all: so displays are
-// counted, and the last renderer that uses one ends it.
+// A device has one display per process, and eglTerminate() ends it for all users. So users are
+// counted, and the last renderer on a display terminates it.
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +20,7 @@ static struct {
     uint32_t users;
 } displays[MAX_EGL_DEVICES + 1];
 
-// Initialises a display for one more user. False if that fails.
+// Initialises a display for one more user. False on failure.
 static bool display_retain(EGLDisplay display)
 {
     bool done = false;
@@ -60,7 +60,7 @@ static bool display_open_context(struct gpu *gpu, EGLDisplay display)
         return false;
     static const EGLint config_attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
                                                EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
-    // Where the driver can, it tells of a lost context rather than ends the program.
+    // Where supported, the driver reports a lost context instead of ending the process.
     bool robust = epoxy_has_egl_extension(display, "EGL_EXT_create_context_robustness");
     const EGLint context_attributes[] = {
         EGL_CONTEXT_MAJOR_VERSION,
@@ -130,7 +130,8 @@ static bool open_surfaceless(struct gpu *gpu, const char *client_extensions)
     return true;
 }
 
-// Devices in the order of preference for "auto" (hardware first) or those of the wanted kind.
+// Tries devices in the order of preference for "auto" (hardware first), or those of the wanted
+// kind.
 static bool open_by_kind(struct gpu *gpu, const EGLDeviceEXT *devices, int count, bool hardware,
                          bool software)
 {

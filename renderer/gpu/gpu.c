@@ -44,7 +44,8 @@ static void read_info(struct gpu *gpu)
     info->max_texture_edge = (uint32_t)edge;
 }
 
-// GL limits that the shaders rely on (shaders/shared/slots.h), all guaranteed or near by 4.5.
+// Checks GL limits that the shaders rely on (shaders/shared/slots.h), all at or near GL 4.5's
+// minimum.
 static bool check_limits(struct error *out_error)
 {
     static const struct {
@@ -92,7 +93,7 @@ struct gpu *gpu_create(const char *choice, const char *shader_dir, struct error 
     read_info(gpu);
     if (!check_limits(out_error))
         goto fail;
-    // Reversed Z in [0, 1]: floating-point depth stays precise far away.
+    // Reversed Z in [0, 1]: floating-point depth stays precise at a distance.
     glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
     glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);

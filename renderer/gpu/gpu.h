@@ -1,6 +1,6 @@
-// The headless GL 4.5 context and the commands that passes give it. Render thread only.
+// The headless GL 4.5 context and the commands that passes issue. Render thread only.
 //
-// renderer/gpu/ is the only place that calls EGL or GL.
+// renderer/gpu/ is the only folder that calls EGL or GL.
 #ifndef VOXCAST_RENDERER_GPU_GPU_H
 #define VOXCAST_RENDERER_GPU_GPU_H
 
@@ -17,36 +17,35 @@ struct gpu_texture;
 struct gpu_program;
 struct gpu_framebuffer;
 
-// `gpu` is "auto", "software" or a device index. Fails with a message that names what is missing.
+// `gpu` is "auto", "software" or a device index. On failure the message names what is missing.
 struct gpu *gpu_create(const char *gpu, const char *shader_dir, struct error *out_error);
 void gpu_destroy(struct gpu **gpu);
 const struct renderer_info *gpu_get_info(const struct gpu *gpu);
 const char *gpu_get_shader_dir(const struct gpu *gpu);
 
-// What renderer_inject_fault() makes happen.
+// Implements renderer_inject_fault() and renderer_fault_left().
 void gpu_inject_fault(struct gpu *gpu, enum renderer_fault fault, uint64_t number);
 uint64_t gpu_fault_left(const struct gpu *gpu, enum renderer_fault fault);
 
-// Whether the driver has lost the context, and with it all that was in it: nothing can be drawn any
-// more. Asks the driver.
+// Whether the driver has lost the context and everything in it: nothing can be drawn any more.
+// Queries the driver.
 bool gpu_is_lost(struct gpu *gpu);
 
-// Errors reported by the debug callback so far.
+// Errors that the debug callback has reported so far.
 uint64_t gpu_error_count(const struct gpu *gpu);
 
 // Bytes of all live buffers and textures whose label starts with `prefix`.
 uint64_t gpu_memory_bytes(const struct gpu *gpu, const char *prefix);
 
-// Calls `yield`, which may wait, before each piece of work (dispatches, and what is drawn at
-// once). On CPU drivers alone: those run one piece after another, whoever wants them, so that a
-// frame of many long ones would hold up all others; GPUs are done with a frame before anybody
-// notices. NULL: nobody is asked, as after gpu_create().
+// Calls `yield`, which may block, before each dispatch or immediate draw. On CPU drivers only: they
+// run work of all contexts in sequence, so a frame of many long dispatches would hold up all
+// others; GPUs finish a frame before that matters. NULL: never called, as after gpu_create().
 void gpu_set_yield(struct gpu *gpu, void (*yield)(void *user), void *user);
 
-// A clock that stands still while `yield` waits.
+// A clock that stops while `yield` blocks.
 double gpu_clock_ms(const struct gpu *gpu);
 
-// Debug groups, seen in captures and in debug messages.
+// Debug groups, shown in captures and debug messages.
 void gpu_push_group(struct gpu *gpu, const char *name);
 void gpu_pop_group(struct gpu *gpu);
 
@@ -56,11 +55,11 @@ void gpu_bind_uniforms(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *
 void gpu_bind_texture(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture);
 void gpu_bind_image(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture);
 
-// Runs a compute program over x * y * z groups.
+// Dispatches x * y * z groups of a compute program.
 void gpu_dispatch(struct gpu *gpu, const struct gpu_program *program, uint32_t x, uint32_t y,
                   uint32_t z);
 
-// The same with the three counts read from a buffer, as a shader left them there.
+// The same with the three counts read from a buffer that a shader wrote.
 void gpu_dispatch_indirect(struct gpu *gpu, const struct gpu_program *program,
                            const struct gpu_buffer *arguments, size_t offset_bytes);
 
@@ -74,16 +73,16 @@ struct gpu_raster_params {
     const struct gpu_framebuffer *framebuffer;
     uint32_t width;
     uint32_t height;
-    bool clear; // colour to 0 (integers), depth to 0 (the far plane of reversed Z)
+    bool clear; // colour to 0 (integers), depth to 0 (far plane of reversed Z)
     enum gpu_depth_test depth_test;
-    float depth_bias_slope; // glPolygonOffset, reversed Z: negative pushes away
+    float depth_bias_slope; // glPolygonOffset in reversed Z: negative pushes away
     float depth_bias_constant;
 };
 
 void gpu_begin_raster(struct gpu *gpu, const struct gpu_raster_params *params);
 void gpu_end_raster(struct gpu *gpu);
 
-// As the GL's DrawElementsIndirectCommand; base_instance picks the draw's record.
+// GL's DrawElementsIndirectCommand; base_instance selects the draw's record.
 struct gpu_draw {
     uint32_t index_count;
     uint32_t instance_count;
@@ -92,9 +91,9 @@ struct gpu_draw {
     uint32_t base_instance;
 };
 
-// What each draw hands to its vertices as attributes: the rows of clip_from_local (attributes 2 to
-// 5) and two numbers, first visibility id and material (attribute 8). Attributes that change once
-// per draw cost a software renderer far less than look-ups in a storage buffer.
+// Per-draw vertex attributes: the rows of clip_from_local (attributes 2 to 5), and first visibility
+// id and material (attribute 8). For a software renderer attributes that change once per draw cost
+// far less than look-ups in a storage buffer.
 struct gpu_draw_record {
     float clip_rows[4][4];
     uint32_t first_id;
@@ -102,8 +101,8 @@ struct gpu_draw_record {
     uint32_t unused[2];
 };
 
-// A vertex as draws read it: attributes 0 (position), 1 (both sets of texture coordinates), 6
-// (alpha) and 7 (the number that the vertex gives to triangles that begin with it).
+// A vertex as rasterized: attributes 0 (position), 1 (both sets of texture coordinates), 6 (alpha)
+// and 7 (number of the triangles that start with this vertex).
 struct raster_vertex {
     float position[3];
     float uv[2][2];
@@ -111,13 +110,13 @@ struct raster_vertex {
     uint32_t triangle;
 };
 
-// `vertices` holds raster_vertex, `indices` 32-bit numbers.
+// `vertices` holds raster_vertex, `indices` 32-bit indices.
 struct gpu_geometry;
 struct gpu_geometry *gpu_geometry_create(struct gpu *gpu, const struct gpu_buffer *vertices,
                                          const struct gpu_buffer *indices);
 void gpu_geometry_destroy(struct gpu_geometry **geometry);
 
-// Draws `count` commands of `draws`, starting with number `first`. `records` holds gpu_draw_record.
+// Draws `count` commands of `draws` from number `first` on. `records` holds gpu_draw_record.
 struct gpu_draw_params {
     const struct gpu_program *program;
     const struct gpu_geometry *geometry;
@@ -129,7 +128,7 @@ struct gpu_draw_params {
 };
 void gpu_draw_indirect(struct gpu *gpu, const struct gpu_draw_params *params);
 
-// Fences: signalled when all commands before them are done.
+// Fences signal when all commands before them are done.
 struct gpu_fence;
 struct gpu_fence *gpu_fence_create(struct gpu *gpu);
 bool gpu_fence_is_done(struct gpu_fence *fence, bool wait);

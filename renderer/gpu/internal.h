@@ -1,4 +1,4 @@
-// What the files of renderer/gpu share; nobody else includes it.
+// Shared by the files of renderer/gpu; included nowhere else.
 #ifndef VOXCAST_RENDERER_GPU_INTERNAL_H
 #define VOXCAST_RENDERER_GPU_INTERNAL_H
 
@@ -14,7 +14,7 @@ struct gpu_allocation {
     char label[GPU_LABEL_SIZE];
     uint64_t bytes;
     struct gpu_allocation *next;
-    struct gpu_allocation **link; // what points here
+    struct gpu_allocation **link; // the pointer that points here
 };
 
 struct gpu_program_library;
@@ -30,8 +30,8 @@ struct gpu {
     uint32_t current_program;
     void (*yield)(void *user); // NULL for none
     void *yield_user;
-    double waited_ms;                      // in it, so far
-    uint64_t faults[RENDERER_FAULT_COUNT]; // events until the one that fails; 0: none does
+    double waited_ms;                      // in `yield`, so far
+    uint64_t faults[RENDERER_FAULT_COUNT]; // events left until the one that fails; 0: none
     bool lost;
 };
 
@@ -39,10 +39,10 @@ void gpu_account(struct gpu *gpu, struct gpu_allocation *allocation, const char 
                  uint64_t bytes);
 void gpu_unaccount(struct gpu_allocation *allocation);
 
-// Counts an event of a kind; whether it is the one that is to fail.
+// Counts an event. True if this one must fail.
 bool gpu_fault_strikes(struct gpu *gpu, enum renderer_fault fault);
 
-// True and cleared if GL ran out of memory in the calls since the last check, which made one buffer
+// True, once, if GL ran out of memory in the calls since the last check, which created one buffer
 // or texture.
 bool gpu_take_out_of_memory(struct gpu *gpu);
 

@@ -64,7 +64,7 @@ static GLuint compile_stage(GLenum stage, const struct shader_source *source, co
     return 0;
 }
 
-// Remembers the files that a program is made of, for hot reload.
+// Records a program's source files, for hot reload.
 static void record_files(struct gpu_program *program, const struct shader_source *source)
 {
     size_t total = program->file_count + source->file_count;
@@ -91,7 +91,7 @@ static GLuint build_stage(struct gpu *gpu, struct gpu_program *program, GLenum s
     return shader;
 }
 
-// Builds a GL program object; 0 on failure. Replaces the program's list of files either way.
+// Builds a GL program object; 0 on failure. Replaces the program's list of files in either case.
 static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *out_error)
 {
     program->file_count = 0;

@@ -1,17 +1,19 @@
-// GLSL programs: loading with includes, permutations by defines, and hot reload.
+// GLSL programs: includes, permutations by defines, and hot reload.
 #ifndef VOXCAST_RENDERER_GPU_PROGRAM_H
 #define VOXCAST_RENDERER_GPU_PROGRAM_H
 
 #include "renderer/gpu/gpu.h"
 
-// The program of a shader file (path below the shader folder) and defines, built at the first
-// request and kept. `path` names a compute shader ("gbuffer.comp") or, without extension, a pair
-// of .vert and .frag. `defines` are lines of "NAME VALUE\n", or "". NULL on failure.
+// The permutation of a shader file (path below the shader folder) for these defines, built on first
+// use and kept. `path` names a compute shader ("gbuffer.comp") or, without extension, a pair of
+// .vert and .frag. `defines` are lines "NAME VALUE
+// ", or "". NULL on failure.
 const struct gpu_program *gpu_program_get(struct gpu *gpu, const char *path, const char *defines,
                                           struct error *out_error);
 
-// Rebuilds programs whose files have changed on disk, at most a few checks per second. One that
-// fails keeps its last good build. Returns the number rebuilt; failures go to `out_error`.
+// Rebuilds programs whose files have changed on disk; checks a few times per second at most. A
+// program that fails keeps its last good build. Returns the number rebuilt; errors go to
+// `out_error`.
 uint32_t gpu_programs_reload_changed(struct gpu *gpu, struct error *out_error);
 
 // Starts watching the shader folder.

@@ -31,7 +31,7 @@ static char *read_file(const char *folder, const char *path, struct error *out_e
 static bool expand(struct text_builder *builder, const char *path, int depth,
                    struct error *out_error);
 
-// The quoted name of an include line, or false for any other line.
+// Name of an include line; false for any other line.
 static bool parse_include(const char *line, size_t length, char out_name[SHADER_MAX_PATH])
 {
     char copy[SHADER_MAX_PATH * 2];
@@ -74,7 +74,7 @@ static bool expand(struct text_builder *builder, const char *path, int depth,
     struct shader_source *source = builder->source;
     for (uint32_t i = 0; i < source->file_count; i++)
         if (strcmp(source->files[i], path) == 0)
-            return true; // each file once
+            return true; // include each file once
     if (depth > SHADER_MAX_DEPTH || source->file_count == SHADER_MAX_FILES)
         return error_set(out_error,
                          "shader \"%s\": includes nest deeper than %d or name over %d "

@@ -18,14 +18,14 @@ struct shader_source {
     char files[SHADER_MAX_FILES][SHADER_MAX_PATH]; // relative to the shader folder
 };
 
-// Reads `path` (relative to `folder`), puts "#version 450 core" and `defines` first, expands each
-// `#include "file"` (relative to the folder) once, and emits #line so that driver messages can be
-// mapped back by file number. False with a message that names the file and line.
+// Reads `path` (relative to `folder`), prepends "#version 450 core" and `defines`, expands each
+// `#include "file"` (relative to the folder) once, and emits #line, so that driver messages can be
+// mapped back by file number. False with a message that names file and line.
 bool shader_source_read(struct shader_source *source, const char *folder, const char *path,
                         const char *defines, struct error *out_error);
 void shader_source_finish(struct shader_source *source);
 
-// Rewrites the file numbers of a driver's log ("0:12(3): error", "0(12) : error") into paths.
+// Replaces file numbers in a driver's log ("0:12(3): error", "0(12) : error") by paths.
 void shader_source_map_log(const struct shader_source *source, const char *log, char *out_text,
                            size_t out_size);
 

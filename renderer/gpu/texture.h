@@ -1,4 +1,4 @@
-// GPU textures with immutable storage, and framebuffers of them.
+// GPU textures with immutable storage, and framebuffers.
 #ifndef VOXCAST_RENDERER_GPU_TEXTURE_H
 #define VOXCAST_RENDERER_GPU_TEXTURE_H
 
@@ -15,9 +15,9 @@ enum gpu_format {
 
 enum gpu_filter {
     GPU_FILTER_NEAREST,
-    GPU_FILTER_LINEAR,               // and between mipmaps where there are any
-    GPU_FILTER_LINEAR_NEAREST_LEVEL, // linear within the nearest mipmap: half the texels
-    GPU_FILTER_SHADOW_COMPARE        // linear, comparing reference >= depth (reversed Z)
+    GPU_FILTER_LINEAR,               // and between mip levels, if any
+    GPU_FILTER_LINEAR_NEAREST_LEVEL, // linear within the nearest mip level: half the texels
+    GPU_FILTER_SHADOW_COMPARE        // linear comparison: reference >= depth (reversed Z)
 };
 
 struct gpu_texture_params {
@@ -25,26 +25,26 @@ struct gpu_texture_params {
     enum gpu_format format;
     uint32_t width;
     uint32_t height;
-    uint32_t layers; // 0: plain 2D; else a 2D array
-    uint32_t depth;  // 0: as `layers` says; else a 3D texture
+    uint32_t layers; // 0: 2D; else a 2D array
+    uint32_t depth;  // 0: as `layers` says; else 3D
     uint32_t levels; // 0 means 1
     enum gpu_filter filter;
-    bool repeat_u; // else clamp to edge
+    bool repeat_u; // false: clamp to edge
     bool repeat_v;
 };
 
-// NULL when GL is out of memory.
+// NULL when GL runs out of memory.
 struct gpu_texture *gpu_texture_create(struct gpu *gpu, const struct gpu_texture_params *params);
 void gpu_texture_destroy(struct gpu_texture **texture);
 
-// Uploads one level of one layer: tightly packed rows, 4 bytes a pixel (RGBA8 formats), 4 floats
-// (RGBA16F) or 4 words (RGBA32UI).
+// Uploads one level of one layer. Tightly packed rows of 4 bytes per texel (RGBA8 formats), 4
+// floats (RGBA16F) or 4 words (RGBA32UI).
 void gpu_texture_write(struct gpu_texture *texture, uint32_t level, uint32_t layer,
                        const void *pixels);
 // Zeroes all levels.
 void gpu_texture_clear(struct gpu_texture *texture);
 
-// Copies a 3D texture to host memory and waits for the GPU: 4 floats a texel, x fastest; for tests.
+// Copies a 3D texture to host memory, 4 floats per texel, x fastest; waits for the GPU. For tests.
 void gpu_texture_read(const struct gpu_texture *texture, float *out_texels, size_t size_bytes);
 
 void gpu_texture_generate_levels(struct gpu_texture *texture);
@@ -54,7 +54,7 @@ uint32_t gpu_texture_levels(const struct gpu_texture *texture);
 size_t gpu_texture_texel_count(const struct gpu_texture *texture, uint32_t level);
 uint32_t gpu_texture_edge(const struct gpu_texture *texture); // width in texels
 
-// One optional colour texture and one depth texture; `layer` picks from arrays.
+// An optional colour texture and a depth texture; `layer` selects the layer of an array.
 struct gpu_framebuffer *gpu_framebuffer_create(struct gpu *gpu, const char *label,
                                                const struct gpu_texture *color,
                                                const struct gpu_texture *depth,

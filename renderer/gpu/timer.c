@@ -40,7 +40,7 @@ void gpu_timer_begin_frame(struct gpu_timer *timer)
 {
     gpu_timer_poll(timer);
     timer->frame = (timer->frame + 1) % FRAMES_IN_FLIGHT;
-    // What has not arrived in FRAMES_IN_FLIGHT frames is given up rather than waited for.
+    // Gives up results that have not arrived after FRAMES_IN_FLIGHT frames, rather than wait.
     for (uint32_t slot = 0; slot < GPU_TIMER_SLOTS; slot++)
         timer->pending[timer->frame][slot] = false;
 }
@@ -62,8 +62,8 @@ void gpu_timer_end(struct gpu_timer *timer, uint32_t slot)
         timer->pending[timer->frame][slot] = true;
         return;
     }
-    // Rasterisation is queued even on a CPU driver: finish it, so that each pass shows its own
-    // time. The work has to be done anyway before the frame can be read.
+    // CPU drivers queue rasterization: finish it here, so that each pass shows its own time. The
+    // frame needs the work anyway before it is read back.
     glFinish();
     timer->time_ms[slot] = gpu_clock_ms(timer->gpu) - timer->started_ms[slot];
 }
@@ -72,7 +72,7 @@ void gpu_timer_poll(struct gpu_timer *timer)
 {
     if (!timer->gpu->info.gpu_timers)
         return;
-    // Oldest frame first, so that the newest arrival wins.
+    // Oldest frame first, so that the newest result wins.
     for (uint32_t age = FRAMES_IN_FLIGHT; age-- > 0;) {
         uint32_t frame = (timer->frame + FRAMES_IN_FLIGHT - age) % FRAMES_IN_FLIGHT;
         for (uint32_t slot = 0; slot < GPU_TIMER_SLOTS; slot++) {

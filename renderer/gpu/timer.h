@@ -1,5 +1,5 @@
-// Pass timers: GPU timestamps read back frames later without stalling, or the clock where the
-// driver runs dispatches synchronously and timer queries see nothing.
+// Pass timers: GPU timestamps, read frames later without stalling; or the clock, if the driver runs
+// dispatches synchronously and timer queries miss them.
 #ifndef VOXCAST_RENDERER_GPU_TIMER_H
 #define VOXCAST_RENDERER_GPU_TIMER_H
 
@@ -17,11 +17,12 @@ void gpu_timer_begin_frame(struct gpu_timer *timer);
 void gpu_timer_begin(struct gpu_timer *timer, uint32_t slot);
 void gpu_timer_end(struct gpu_timer *timer, uint32_t slot);
 
-// Takes in what has arrived. Time of the newest measured run of a slot in ms; 0 before the first.
+// Collects results that have arrived. gpu_timer_get_ms(): newest result of a slot in ms, 0 before
+// the first.
 void gpu_timer_poll(struct gpu_timer *timer);
 double gpu_timer_get_ms(const struct gpu_timer *timer, uint32_t slot);
 
-// Tells whether GL timer queries see compute dispatches on this driver.
+// Whether GL timer queries measure compute dispatches on this driver.
 bool gpu_timer_probe(struct gpu *gpu);
 
 #endif
