@@ -95,7 +95,7 @@ void display_pixel(const struct display_params *params, const float radiance[3],
             return;
         }
     }
-    // Far beyond white, squares would leave the range of floats.
+    // Far above white, squares would leave the range of floats.
     for (int c = 0; c < 3; c++)
         color[c] = fminf(color[c], 1e9f);
     if (params->tonemap == TONEMAP_KHRONOS_NEUTRAL)

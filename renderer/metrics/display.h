@@ -1,6 +1,6 @@
-// Displayed pictures made on the CPU from linear radiance: the curves of shaders/lib/display.glsl
-// and the automatic exposure of shaders/post/exposure.comp. So pictures of different origin are
-// shown and judged alike.
+// Linear radiance to display values on the CPU: the curves of shaders/lib/display.glsl and the
+// automatic exposure of shaders/post/exposure.comp, so that images of any origin are shown and
+// judged alike.
 #ifndef VOXCAST_RENDERER_METRICS_DISPLAY_H
 #define VOXCAST_RENDERER_METRICS_DISPLAY_H
 
@@ -8,27 +8,27 @@
 #include "renderer/settings.h"
 
 struct display_params {
-    float exposure; // radiance is multiplied by it
+    float exposure; // factor on radiance
     enum tonemap tonemap;
     float gamma; // 0: the sRGB curve (IEC 61966-2-1); else a plain power
 };
 
-// The scale that automatic exposure settles on for this picture; 1 if nothing in it shines.
+// Scale that automatic exposure converges to for this image; 1 if the image is black.
 float display_automatic_exposure(const struct picture *picture);
 
-// One pixel's radiance to display values 0..1. What is not finite shows as black.
+// One pixel's radiance to display values 0..1. Non-finite values become black.
 void display_pixel(const struct display_params *params, const float radiance[3],
                    float out_display[3]);
 
-// A whole picture; `out_picture` is initialised and of the same size, or the same.
+// A whole image; `out_picture` is initialised and of the same size, or the input itself.
 void display_picture(const struct display_params *params, const struct picture *radiance,
                      struct picture *out_picture);
 
-// A whole picture to 3 bytes a pixel.
+// A whole image to 3 bytes per pixel.
 void display_bytes(const struct display_params *params, const struct picture *radiance,
                    uint8_t *out_rgb);
 
-// The sRGB curve backwards: display values 0..1 to linear 0..1.
+// Inverse sRGB curve: display values 0..1 to linear 0..1.
 float display_linear_from_srgb(float value);
 
 #endif

@@ -10,8 +10,8 @@
 
 // Constants of the 2020 paper.
 #define COLOR_EXPONENT   0.7f   // q_c
-#define COLOR_KNEE       0.4f   // p_c, as a share of the largest colour difference
-#define COLOR_KNEE_ERROR 0.95f  // p_t, what a difference at the knee is mapped to
+#define COLOR_KNEE       0.4f   // p_c, as a fraction of the largest colour difference
+#define COLOR_KNEE_ERROR 0.95f  // p_t, the error at the knee
 #define FEATURE_EXPONENT 0.5f   // q_f
 #define FEATURE_DEGREES  0.082f // width of the feature detectors
 
@@ -31,14 +31,14 @@ struct kernel {
     float taps[2 * MAX_RADIUS + 1];
 };
 
-// The filters for one density of pixels.
+// Filters for one pixel density.
 struct flip_kernels {
     struct kernel achromatic, red_green, blue_yellow[2];
     float blue_yellow_weights[2];
     struct kernel blur, edge, point; // of the feature detectors
 };
 
-// Planes of one picture while it is compared; each holds width x height floats.
+// Planes of an image during the comparison, width x height floats each.
 enum plane {
     PLANE_Y, // of YCxCz before filtering, later L*
     PLANE_X, // then Hunt-adjusted a*
@@ -52,7 +52,7 @@ struct flip_image {
     uint32_t width, height;
     float *planes[PLANE_COUNT];
     float *scratch[3];
-    float *row; // one row with its edges repeated
+    float *row; // one row, edge pixels repeated
 };
 
 // Rec.709 to CIE XYZ, and back.
@@ -76,7 +76,7 @@ static float lab_curve(float t)
     return t > delta * delta * delta ? cbrtf(t) : t / (3.0f * delta * delta) + 4.0f / 29.0f;
 }
 
-// L*, and a* and b* scaled by L* / 100 (Hunt 2004: colours seem less saturated in the dark).
+// L*, and a* and b* scaled by L* / 100 (Hunt 2004: colours look less saturated in the dark).
 static void hunt_lab_from_rgb(const float rgb[3], float out_lab[3])
 {
     float xyz[3], f[3];
@@ -108,7 +108,7 @@ static int clamp_radius(float radius)
     return (int)fminf(fmaxf(ceilf(radius), 1.0f), (float)MAX_RADIUS);
 }
 
-// exp(-pi^2 x^2 / b), normalised; returns the sum before that.
+// exp(-pi^2 x^2 / b), normalised; returns the sum before normalisation.
 static float gaussian_kernel(struct kernel *kernel, int radius, float b, float pixels_per_degree)
 {
     float sum = 0.0f;
@@ -123,7 +123,7 @@ static float gaussian_kernel(struct kernel *kernel, int radius, float b, float p
     return sum;
 }
 
-// Scales positive taps to the sum 1 and negative ones to -1.
+// Scales positive taps to sum 1 and negative ones to sum -1.
 static void normalize_detector(struct kernel *kernel)
 {
     float positive = 0.0f, negative = 0.0f;
@@ -141,7 +141,7 @@ static void make_kernels(struct flip_kernels *kernels, float pixels_per_degree)
     int radius = clamp_radius(3.0f * sqrtf(WIDEST_B / (2.0f * PI * PI)) * pixels_per_degree);
     gaussian_kernel(&kernels->achromatic, radius, ACHROMATIC_B, pixels_per_degree);
     gaussian_kernel(&kernels->red_green, radius, RED_GREEN_B, pixels_per_degree);
-    // The sum of two filters in the plane; each is separable.
+    // Sum of two 2D filters, each of which is separable.
     const float amplitudes[2] = {BLUE_YELLOW_A1 * sqrtf(PI / BLUE_YELLOW_B1),
                                  BLUE_YELLOW_A2 * sqrtf(PI / BLUE_YELLOW_B2)};
     const float widths[2] = {BLUE_YELLOW_B1, BLUE_YELLOW_B2};
@@ -176,7 +176,7 @@ static int clamp_index(int index, int count)
     return index < 0 ? 0 : index >= count ? count - 1 : index;
 }
 
-// Along rows; pixels at the edges repeat. `out` is not `in`.
+// Filters along rows and repeats edge pixels. `out` must not be `in`.
 static void filter_rows(const struct flip_image *image, const struct kernel *kernel,
                         const float *in, float *out)
 {
@@ -208,14 +208,14 @@ static void filter_columns(const struct flip_image *image, const struct kernel *
     }
 }
 
-// Filters a plane in place by a separable kernel.
+// Filters a plane in place with a separable kernel.
 static void filter_plane(const struct flip_image *image, const struct kernel *kernel, float *plane)
 {
     filter_rows(image, kernel, plane, image->scratch[0]);
     filter_columns(image, kernel, image->scratch[0], plane);
 }
 
-// Lengths of the answers of one detector along both axes, of the lightness that `normalized` holds.
+// Magnitude of one detector's responses along both axes, on the lightness in `normalized`.
 static void detect(const struct flip_image *image, const struct kernel *blur,
                    const struct kernel *detector, const float *normalized, float *out)
 {
@@ -255,7 +255,7 @@ static void flip_image_finish(struct flip_image *image)
     free(image->row);
 }
 
-// From linear RGB 0..1 to filtered Hunt-adjusted L*a*b* and the features.
+// Linear RGB 0..1 to filtered Hunt-adjusted L*a*b* and features.
 static void analyze(struct flip_image *image, const struct flip_kernels *kernels,
                     const struct picture *picture)
 {
@@ -296,7 +296,7 @@ static void analyze(struct flip_image *image, const struct flip_kernels *kernels
     }
 }
 
-// Compares linear pictures; errors above those in the map replace them.
+// Compares linear images; raises the map to the errors that exceed it.
 static void raise_errors(struct flip_image images[2], const struct flip_kernels *kernels,
                          const struct picture pictures[2], float *map)
 {
@@ -319,12 +319,12 @@ static void raise_errors(struct flip_image images[2], const struct flip_kernels 
         float feature = fmaxf(fabsf(edge[0] - edge[1]), fabsf(point[0] - point[1]));
         feature = powf(fminf(feature * 0.70710678f, 1.0f), FEATURE_EXPONENT);
         float error = powf(fminf(color, 1.0f), 1.0f - feature);
-        // 0 to the power 0 would be 1 where nothing differs.
+        // Avoids 0 to the power 0, which is 1, where nothing differs.
         map[i] = fmaxf(map[i], color > 0.0f ? error : 0.0f);
     }
 }
 
-// What both comparisons need.
+// Buffers of both comparisons.
 struct flip_work {
     struct flip_image images[2];
     struct picture pictures[2]; // linear 0..1
@@ -386,7 +386,7 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// The curve that HDR-FLIP shows radiance by: ACES as Narkowicz fitted it, on 0.6 of the radiance.
+// Tone curve of HDR-FLIP: ACES in Narkowicz's fit, at 0.6 of the radiance.
 static float shown(float radiance)
 {
     float x = 0.6f * fminf(radiance, 1e9f);
@@ -395,7 +395,7 @@ static float shown(float radiance)
 
 struct flip_exposures flip_find_exposures(const struct picture *reference)
 {
-    // Where the curve reaches 0.85: the positive root of a quadratic equation.
+    // The curve's input for 0.85: the positive root of a quadratic equation.
     const float t = 0.85f;
     const float a = 0.36f * (2.51f - t * 2.43f), b = 0.6f * (0.03f - t * 0.59f), c = -t * 0.14f;
     const float bright = (-b + sqrtf(b * b - 4.0f * a * c)) / (2.0f * a);
@@ -409,7 +409,7 @@ struct flip_exposures flip_find_exposures(const struct picture *reference)
     }
     qsort(luminances, count, sizeof(float), compare_floats);
     float highest = luminances[count - 1];
-    // Where half of the picture is black, the median of what is not.
+    // If half of the image is black, the median of the rest.
     float median = luminances[count / 2] > 0.0f ? luminances[count / 2]
                    : lit > 0                    ? luminances[count - lit + lit / 2]
                                                 : 0.0f;

@@ -6,14 +6,14 @@
 
 #define PI              3.14159265358979f
 #define TABLE_SIZE      256
-#define LOWEST          0.0f // OKLab lightness of the error 0
+#define LOWEST          0.0f // OKLab lightness of error 0
 #define HIGHEST         0.97f
 #define LARGEST_CHROMA  0.22f
 #define FIRST_HUE_RAD   (290.0f * PI / 180.0f) // violet
-#define LAST_HUE_RAD    (470.0f * PI / 180.0f) // yellow, by way of red
+#define LAST_HUE_RAD    (470.0f * PI / 180.0f) // yellow, through red
 #define BISECTION_STEPS 16
 
-// Linear sRGB of an OKLab colour; false if it is outside of what sRGB can show.
+// Linear sRGB of an OKLab colour; false outside the sRGB gamut.
 static bool linear_from_oklab(float lightness, float a, float b, float out_rgb[3])
 {
     float l = lightness + 0.3963377774f * a + 0.2158037573f * b;

@@ -44,7 +44,7 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Sums over the pixels that are finite in both pictures.
+// Sums over the pixels that are finite in both images.
 struct radiance_sums {
     size_t count;
     double test[CHANNEL_COUNT], reference[CHANNEL_COUNT];
@@ -94,7 +94,7 @@ static double relative_error(const struct picture *test, const struct picture *r
     return sum / (double)(CHANNEL_COUNT * sums->count);
 }
 
-// Fills the metrics of radiance but for FLIP. False when out of memory.
+// Computes the radiance metrics except FLIP. False when out of memory.
 static bool measure_radiance(const struct picture *test, const struct picture *reference,
                              double values[METRIC_COUNT])
 {
@@ -145,7 +145,7 @@ static void window_weights(double weights[2 * SSIM_RADIUS + 1])
         weights[i] /= sum;
 }
 
-// Moments of the row windows around column `x`; those beyond the edge count as the edge's pixels.
+// Moments of the row windows around column `x`; repeats edge pixels.
 static void row_moments(const struct picture *a, const struct picture *b, const double *weights,
                         int x, int y, double out[MOMENT_COUNT])
 {
@@ -179,8 +179,7 @@ static double window_similarity(const double *rows, int width, int height, const
            ((m[0] * m[0] + m[1] * m[1] + SSIM_C1) * (variance_a + variance_b + SSIM_C2));
 }
 
-// Mean over the windows that lie within the picture, or over all where none does. NaN when out of
-// memory.
+// Mean over the windows inside the image, or over all if none is. NaN when out of memory.
 static double structural_similarity(const struct picture *a, const struct picture *b)
 {
     int width = (int)a->width, height = (int)a->height;
@@ -207,7 +206,7 @@ static double peak_signal_to_noise(const struct picture *a, const struct picture
     double squared = 0.0;
     for (size_t i = 0; i < count; i++)
         squared += ((double)a->rgb[i] - b->rgb[i]) * ((double)a->rgb[i] - b->rgb[i]);
-    return -10.0 * log10(squared / (double)count); // infinite where nothing differs
+    return -10.0 * log10(squared / (double)count); // infinite if nothing differs
 }
 
 static double mean(const float *values, size_t count)
@@ -218,7 +217,7 @@ static double mean(const float *values, size_t count)
     return sum / (double)count;
 }
 
-// Pictures as they are displayed, and room for a map.
+// Displayed images and an error map.
 struct displayed {
     struct picture test, reference;
     float *map;

@@ -22,7 +22,7 @@ void picture_finish(struct picture *picture)
     *picture = (struct picture){0};
 }
 
-// A word of the header and the one white-space character behind it.
+// Reads a word of the header and the one white-space character after it.
 static bool read_word(FILE *file, char out_word[HEADER_WORD_SIZE])
 {
     size_t length = 0;

@@ -1,4 +1,4 @@
-// Float pictures in host memory, and their files.
+// Float images in host memory, and their files.
 #ifndef VOXCAST_RENDERER_METRICS_PICTURE_H
 #define VOXCAST_RENDERER_METRICS_PICTURE_H
 
@@ -13,7 +13,7 @@
 struct picture {
     uint32_t width;
     uint32_t height;
-    float *rgb; // owned, 3 floats a pixel, row 0 at the top
+    float *rgb; // owned, 3 floats per pixel, row 0 at the top
 };
 
 // Zeroed. False when out of memory; then nothing needs finishing.
@@ -25,12 +25,12 @@ static inline size_t picture_pixel_count(const struct picture *picture)
     return (size_t)picture->width * picture->height;
 }
 
-// Portable Float Map: "PF", size, scale (negative: little endian), rows from the bottom up, either
-// byte order, edges up to PICTURE_MAX_EDGE. False with a message that says what is wrong with the
-// file; then nothing needs finishing.
+// Reads a Portable Float Map: "PF", size, scale (negative: little endian), rows from the bottom up,
+// either byte order, edges up to PICTURE_MAX_EDGE. False with a message about the file; then
+// nothing needs finishing.
 bool picture_read_pfm(const char *path, struct picture *out_picture, struct error *out_error);
 
-// False with a message; then the file is removed.
+// False with a message; the file is then removed.
 bool picture_write_pfm(const char *path, const struct picture *picture, struct error *out_error);
 
 #endif
