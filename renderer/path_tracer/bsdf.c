@@ -1,28 +1,28 @@
 #include "renderer/path_tracer/bsdf.h"
 
-// The renderer's: narrower lobes are taken as this wide.
+// As the renderer: lobes are at least this wide.
 #define MIN_ALPHA       1e-3f
 #define MIN_VIEW_COSINE 1e-4f
 #define MAX_EXPONENT    16384.0f
-// No lobe that reflects anything is followed less often than this.
+// Minimum probability of sampling a lobe that reflects anything.
 #define MIN_PROBABILITY 0.1f
 #define PI              ((float)M_PI)
 
-// Smith's function of one direction for GGX (Heitz 2014), by the cosine with the normal.
+// Smith's lambda of one direction for GGX (Heitz 2014), from the cosine with the normal.
 static float smith_lambda(float cosine, float alpha)
 {
     float c2 = cosine * cosine;
     return 0.5f * (sqrtf(1.0f + alpha * alpha * (1.0f - c2) / c2) - 1.0f);
 }
 
-// Blinn-Phong's, of a lobe about as wide.
+// Blinn-Phong exponent of a lobe about as wide.
 static float exponent_of(float alpha)
 {
     return min1(max1(2.0f / (alpha * alpha) - 2.0f, 1.0f), MAX_EXPONENT);
 }
 
-// What the dielectric layer reflects. From within a body the angle beyond decides, and where there
-// is none all is reflected.
+// Fresnel of the dielectric layer. Inside a body the refracted angle applies; total internal
+// reflection where there is none.
 static float3 dielectric_fresnel(const struct bsdf *bsdf, float v_h)
 {
     if (bsdf->bends && bsdf->eta > 1.0f) {
@@ -42,7 +42,7 @@ static float3 specular_fresnel(const struct bsdf *bsdf, float3 dielectric, float
     return dielectric + (metal - dielectric) * bsdf->metallic;
 }
 
-// Follows each lobe about as often as it scatters.
+// Lobe probabilities about proportional to what each scatters.
 static void choose_probabilities(struct bsdf *bsdf, enum bsdf_lobes lobes)
 {
     float3 dielectric = dielectric_fresnel(bsdf, bsdf->n_v);
@@ -84,14 +84,15 @@ void bsdf_init(struct bsdf *bsdf, const struct surface *surface, float eta, enum
         .bends = material->refracts,
     };
     if (bsdf->n_v < MIN_VIEW_COSINE) {
-        // Bent normals can look away from the viewer: the lobe is that of the nearest view.
+        // Mapped normals can face away from the viewer: evaluates the lobe for the nearest valid
+        // view.
         bsdf->view = normalize3(bsdf->view + bsdf->normal * (MIN_VIEW_COSINE - bsdf->n_v));
         bsdf->n_v = MIN_VIEW_COSINE;
     }
     bsdf->diffuse =
         surface->base_color * ((1.0f - surface->metallic) * (1.0f - surface->transmission));
     if (material->refracts)
-        // A body is tinted once: where light enters, or where it would have.
+        // A body tints once: where light enters, or would have entered.
         bsdf->tint =
             (surface->is_front ? surface->base_color : splat3(1.0f)) * surface->transmission;
     bool has_specular = surface->metallic > 0.0f || surface->f90 > 0.0f ||
@@ -114,7 +115,7 @@ void bsdf_widen(struct bsdf *bsdf, float alpha)
         bsdf->exponent = exponent_of(bsdf->alpha);
 }
 
-// Trowbridge-Reitz, by the sine for the sake of narrow lobes.
+// Trowbridge-Reitz, from the sine, for the precision of narrow lobes.
 static float distribution(const struct bsdf *bsdf, float3 half, float n_h)
 {
     float3 across = cross3(bsdf->normal, half);
@@ -129,7 +130,7 @@ static void add_specular_lobe(const struct bsdf *bsdf, float3 half, float v_h, f
     float n_h = clamp01(dot3(bsdf->normal, half));
     float3 fresnel = specular_fresnel(bsdf, dielectric, v_h);
     if (bsdf->exponent > 0.0f) {
-        // Normalised as Akenine-Moeller et al., Real-Time Rendering, have it.
+        // Normalised as in Akenine-Moeller et al., Real-Time Rendering.
         float power = powf(n_h, bsdf->exponent);
         scattering->fraction += fresnel * ((bsdf->exponent + 8.0f) / (8.0f * PI) * power * n_l);
         scattering->density += bsdf->p_specular * (bsdf->exponent + 1.0f) / (2.0f * PI) * power /
@@ -156,7 +157,7 @@ static bool evaluate_transmission(const struct bsdf *bsdf, float3 direction, flo
         return false;
     float n_h = clamp01(dot3(bsdf->normal, half));
     float bend = bsdf->eta * v_h + l_h;
-    // Density of the visible normal, times what a normal's solid angle becomes in directions.
+    // Density of the visible normal, times the Jacobian from normals to directions.
     float visible = distribution(bsdf, half, n_h) / (1.0f + bsdf->lambda_v) * v_h / bsdf->n_v *
                     -l_h / max1(bend * bend, 1e-20f);
     float3 kept = splat3(1.0f) - dielectric_fresnel(bsdf, v_h);
@@ -186,8 +187,8 @@ bool bsdf_evaluate(const struct bsdf *bsdf, float3 direction, struct scattering 
     return true;
 }
 
-// A normal of the microsurface as the viewer sees it: the mirror direction of a hemisphere is
-// uniform in a cap (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps").
+// Samples a visible microfacet normal: mirror directions of a hemisphere are uniform in a cap
+// (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps").
 static float3 sample_visible_normal(const struct bsdf *bsdf, float3 x, float3 y, const float u[2])
 {
     float alpha = bsdf->alpha;
@@ -242,7 +243,7 @@ bool bsdf_sample(const struct bsdf *bsdf, float choice, const float u[2], float3
                 normalize3(half * (bsdf->eta * v_h - sqrtf(squared)) - bsdf->view * bsdf->eta);
         }
     }
-    // Microfacets of a rough surface send some light to the wrong side of it: that is lost.
+    // Microfacets of a rough surface scatter some light to the wrong side, where it is lost.
     if (transmits != (dot3(bsdf->geometric_normal, *out_direction) <= 0.0f))
         return false;
     return bsdf_evaluate(bsdf, *out_direction, out_scattering) && out_scattering->density > 0.0f;

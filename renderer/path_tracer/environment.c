@@ -4,11 +4,11 @@
 
 #define MAX_COLUMNS 512u
 #define MAX_ROWS    256u
-// A gradient sky changes from row to row only.
+// A gradient sky varies by row only.
 #define GRADIENT_ROWS 64u
-// Share of the mean luminance that every cell gets, so that none is left out.
+// Minimum weight of a cell over the mean luminance, so that every cell is sampled.
 #define MIN_WEIGHT 0.01f
-// Brightest cell over the mean from which on choosing directions pays.
+// Brightest cell over the mean from which importance sampling pays.
 #define UNEVEN 4.0f
 #define PI     ((float)M_PI)
 
@@ -16,8 +16,8 @@ struct environment {
     const struct scene_environment *source;
     float sine, cosine; // of the rotation
     uint32_t columns, rows;
-    float *row_ends;    // cumulative shares
-    float *column_ends; // in each row
+    float *row_ends;    // cumulative distribution
+    float *column_ends; // of each row
     float *densities;   // per steradian, by cell
     bool shines, uneven;
 };
@@ -61,7 +61,7 @@ static float3 radiance_of(const struct scene_environment *source, float3 directi
     }
 }
 
-// Mean luminance of a cell: of its texels, or at its middle.
+// Mean luminance of a cell: over its texels, or at its centre.
 static float cell_luminance(const struct environment *environment, uint32_t column, uint32_t row)
 {
     const struct scene_environment *source = environment->source;
@@ -81,7 +81,7 @@ static float cell_luminance(const struct environment *environment, uint32_t colu
     return sum / (float)((right - left) * (bottom - top));
 }
 
-// Light of a cell reaches half a texel into its neighbours.
+// Bilinear filtering spreads a cell's light half a texel into its neighbours.
 static float spread_luminance(const struct environment *environment, const float *luminances,
                               uint32_t column, uint32_t row)
 {
@@ -104,7 +104,7 @@ static float cell_solid_angle(const struct environment *environment, uint32_t ro
            (cosf(PI * (float)row / rows) - cosf(PI * (float)(row + 1) / rows));
 }
 
-// Fills the cumulative shares from the cells' luminances, which become densities.
+// Fills the cumulative distributions from the cells' luminances, which become densities.
 static void fill_visibility(struct environment *environment, float *luminances)
 {
     uint32_t columns = environment->columns, rows = environment->rows;
@@ -193,7 +193,7 @@ bool environment_is_uneven(const struct environment *environment)
     return environment->uneven;
 }
 
-// As shaders/lib/environment.glsl turns directions.
+// Rotates directions as shaders/lib/environment.glsl does.
 static float3 to_environment(const struct environment *environment, float3 d)
 {
     return make3(environment->cosine * d[0] - environment->sine * d[2], d[1],
@@ -220,7 +220,8 @@ float environment_density(const struct environment *environment, float3 directio
     return environment->densities[(size_t)row * environment->columns + column];
 }
 
-// The index whose share of 0..1 holds `u`; `out_within` is how far into it.
+// Index of the cumulative distribution's interval that contains `u`; `out_within` is the position
+// in it, 0..1.
 static uint32_t find_within(const float *ends, uint32_t count, float u, float *out_within)
 {
     uint32_t low = 0, high = count - 1;

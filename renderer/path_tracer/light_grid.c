@@ -26,14 +26,14 @@ static struct cell_box reached_cells(const struct light_grid *grid, const struct
     float3 low = (reach->position - range - grid->low) * grid->cells_per_m;
     float3 high = (reach->position + range - grid->low) * grid->cells_per_m;
     for (int axis = 0; axis < 3; axis++) {
-        // A little more, for rounding.
+        // Padded against rounding.
         box.low[axis] = clamp_cell(low[axis] - 0.001f);
         box.high[axis] = clamp_cell(high[axis] + 0.001f);
     }
     return box;
 }
 
-// Counts the lights of each cell in starts[cell + 1], or, if there are lists, fills these.
+// Counts the lights of each cell in starts[cell + 1] or, if there are lists, fills these.
 static void visit(struct light_grid *grid, const struct light_reach *reaches, uint32_t count)
 {
     for (uint32_t light = 0; light < count; light++) {
@@ -79,7 +79,7 @@ bool light_grid_init(struct light_grid *grid, float3 low, float3 high,
         light_grid_finish(grid);
         return false;
     }
-    // Filling moves each start to the next one's place: move them back.
+    // Filling has moved each start to the next one's value: move them back.
     visit(grid, reaches, count);
     for (uint32_t cell = CELLS; cell > 0; cell--)
         grid->starts[cell] = grid->starts[cell - 1];

@@ -6,35 +6,35 @@
 #include "renderer/path_tracer/light_grid.h"
 #include "shared/frame_block.h"
 
-// Of more lights than these, a grid tells which reach a point.
+// With more lights, a grid finds those that reach a point.
 #define FEW_PUNCTUALS 8u
-// Where there is no grid, so many are picked by their power before one is chosen.
+// Without a grid, so many candidates are drawn by power before one is chosen.
 #define MAX_CANDIDATES 64u
-// Of as few emitters a random number has bits enough to choose one and a place on it.
+// With so few emitters one random number has enough bits for the emitter and the point on it.
 #define FEW_EMITTERS 32u
-// Seen flatter than this, an emitter has no solid angle.
+// Below this cosine an emitter has no solid angle.
 #define MIN_EMITTER_COSINE 1e-6f
 
 struct punctual {
     float3 position;
-    float3 direction; // unit, of shining
+    float3 direction; // unit, of the spot or directional light
     float3 intensity; // cd or lux
     enum scene_light_type type;
     bool casts_shadow;
     float range_m;
     float cone_scale, cone_offset;
-    float min_squared; // nearer than that the inverse square no longer grows
+    float min_squared; // squared distance below which the inverse square is clamped
     float radius_m;
-    float power_end; // cumulative share of all lights' luminance
+    float power_end; // cumulative luminance over that of all lights
 };
 
 struct emitter {
     float3 corner, edges[2];
     float3 normal;   // unit, of the front
-    float3 radiance; // if it is the same everywhere
+    float3 radiance; // if uniform
     bool both_sides;
-    bool is_even;   // else the surface must be looked up
-    float per_area; // density of choosing a point of it, per square metre
+    bool is_even;   // false: evaluate the surface
+    float per_area; // density of sampling a point, per square metre
     struct ray_crossing crossing;
 };
 
@@ -43,7 +43,7 @@ struct lights {
     uint32_t punctual_count;
     struct light_grid grid; // of punctual lights
     struct emitter *emitters;
-    float *power_ends; // by emitter: cumulative share of power
+    float *power_ends; // per emitter: cumulative fraction of power
     uint32_t emitter_count;
     double power; // area times luminance
     float inverse_power;
@@ -146,7 +146,8 @@ static double emitter_power(const struct emitter *emitter, const struct material
            (double)material->emitted_luminance;
 }
 
-// Counts the emissive triangles of a primitive, and lists them from `first` if there is a list.
+// Counts the emissive triangles of a primitive and, if there is a list, writes them from `first`
+// on.
 static uint32_t visit_primitive(struct lights *lights, const struct snapshot *snapshot,
                                 uint32_t node, uint32_t primitive, uint32_t first)
 {
@@ -247,8 +248,7 @@ static float spot_falloff(const struct punctual *light, float3 to_light)
     return angular * angular;
 }
 
-// KHR_lights_punctual: inverse square, window of the range, angular falloff of spots. `radius_m`
-// does not matter here.
+// KHR_lights_punctual: inverse square, range window, spot cone. Ignores `radius_m`.
 static bool evaluate_punctual(const struct punctual *light, float3 position,
                               struct light_sample *out_sample)
 {
@@ -275,15 +275,15 @@ static bool evaluate_punctual(const struct punctual *light, float3 position,
     return strength > 0.0f;
 }
 
-// Turns the sample of a light's middle into one of a random point of its sphere, uniform in solid
-// angle, so that it is as bright as the point was from afar. Unchanged within the sphere.
+// Moves the sample from a light's centre to a random point of its sphere, uniform in solid angle,
+// at the brightness that the point light has from afar. Unchanged inside the sphere.
 static void spread_over_sphere(const struct punctual *light, const float u[2],
                                struct light_sample *sample)
 {
     float sine2 = light->radius_m * light->radius_m / (sample->distance * sample->distance);
     if (!(light->radius_m > 0.0f) || sine2 >= 1.0f)
         return;
-    // Radiance intensity / (pi r^2) over the cone's 2 pi (1 - cos).
+    // Radiance intensity / (pi r^2) over the cone's solid angle 2 pi (1 - cos).
     float cone = sine2 / (1.0f + sqrtf(1.0f - sine2)); // 1 - cosine without cancellation
     float brighter = 2.0f * cone / sine2;
     float lower = u[0] * cone, cosine = 1.0f - lower;
@@ -300,10 +300,10 @@ static void spread_over_sphere(const struct punctual *light, const float u[2],
     sample->distance = sample->distance * cosine - sqrtf(inside);
 }
 
-// The first of `count` cumulative shares, `stride` floats apart, beyond `u`.
+// Index of the first of `count` cumulative fractions, `stride` floats apart, above `u`.
 static uint32_t find_fraction(const float *ends, size_t stride, uint32_t count, float u)
 {
-    // Halves without branches, whose ways nobody could foretell.
+    // Binary search without branches, which would be mispredicted.
     uint32_t first = 0, left = count;
     while (left > 1) {
         uint32_t half = left / 2;
@@ -313,18 +313,18 @@ static uint32_t find_fraction(const float *ends, size_t stride, uint32_t count, 
     return first;
 }
 
-// Weight by which a light is chosen: what it would give, roughly.
+// Weight of a light: about its unshadowed contribution.
 static float choice_weight(const struct punctual *light, const struct light_sample *sample,
                            float3 normal, bool both_sides)
 {
-    if (light->radius_m > 0.0f) // part of it may shine though its middle does not
+    if (light->radius_m > 0.0f) // part of the sphere may be visible though its centre is not
         return luminance3(sample->light);
     float cosine = dot3(normal, sample->direction);
     return luminance3(sample->light) * (both_sides ? fabsf(cosine) : max1(cosine, 0.0f));
 }
 
-// One of the candidates that stand for many lights: evenly spaced in their cumulative power. Tells
-// how many lights it stands for.
+// One candidate of many lights, evenly spaced in their cumulative power. Returns how many lights it
+// stands for.
 static uint32_t pick_candidate(const struct lights *lights, uint32_t number, float offset,
                                float *out_scale)
 {
@@ -341,9 +341,9 @@ bool lights_sample_punctual(const struct lights *lights, float3 position, float3
                             bool both_sides, const float choice[2], const float u[2],
                             struct light_sample *out_sample)
 {
-    // One pass: each light replaces the chosen one with the probability of its share so far. Of
-    // many lights only those are looked at that reach here, or candidates that count for the others
-    // (Talbot et al. 2005, "Importance Resampling for Global Illumination").
+    // Reservoir sampling: each light replaces the chosen one with probability weight over weight so
+    // far. With many lights only visits those that reach here, or candidates that stand for the
+    // others (Talbot et al. 2005, "Importance Resampling for Global Illumination").
     const uint32_t *near = NULL;
     uint32_t candidates = lights->punctual_count, chosen = UINT32_MAX;
     bool located = light_grid_find(&lights->grid, position, &near, &candidates);

@@ -8,27 +8,27 @@
 #include "renderer/path_tracer/sampler_batch.h"
 
 #define RAY_MAX_DISTANCE 1e15f
-// Rays start this far off a surface: some units in the last place of its coordinates, and of those
-// that its triangle spans.
+// Offset of ray origins: some units in the last place of the surface's coordinates and of its
+// triangle's extent.
 #define OFFSET_OF_POSITION 2e-6f
 #define OFFSET_OF_SPAN     4e-7f
-// Surfaces that one ray may pass through, and vertices that a path may have, unlikely as they are.
+// Maximum surfaces that a ray passes through, and maximum vertices of a path.
 #define MAX_LAYERS   64u
 #define MAX_VERTICES 4096u
-// Bodies within bodies.
+// Nesting of bodies.
 #define MAX_MEDIA 4u
-// Paths end by chance from here on, by how much light they still carry.
+// Russian roulette by throughput from this vertex on.
 #define ROULETTE_FROM_VERTEX  3u
 #define ROULETTE_MAX_SURVIVAL 0.95f
-// Caustics of points: chance alone would never find a point by way of a mirror or a lens. So where
-// a path has spread before, lobes towards points are at least this wide, less with each further
-// sample of the pixel: the picture converges to the right one (Kaplanyan and Dachsbacher 2013,
-// "Path Space Regularization for Holistic and Robust Light Transport").
+// Caustics of point lights: paths cannot find a point through a mirror or a lens. So after a
+// diffuse vertex, lobes towards points are at least this wide, less with each further sample of the
+// pixel: consistent (Kaplanyan and Dachsbacher 2013, "Path Space Regularization for Holistic and
+// Robust Light Transport").
 #define CAUSTIC_ALPHA 0.2f
 #define CAUSTIC_POWER (-1.0f / 6.0f)
-// Per steradian; directions chosen by less spread a path.
+// Per steradian. Directions sampled with a lower density count as a diffuse vertex.
 #define SPREAD_DENSITY 10.0f
-// What lets less than this through is opaque.
+// Transmittance below which a layer is opaque.
 #define MIN_TRANSMITTANCE 1e-6f
 
 // Random numbers of a vertex; see sampler.h. Pairs come first.
@@ -48,34 +48,34 @@ enum use {
 #define USE_VERTEX  1u
 #define USE_PASSING (1u << 24)
 
-// What a vertex aims at: shadow rays of one kind are cast together.
+// Targets of next-event estimation: shadow rays of one kind are cast together.
 enum aim { AIM_LIGHT, AIM_EMITTER, AIM_ENVIRONMENT, AIMS };
 
 struct path {
     const struct path_setup *setup;
     struct batch *batch;
     float3 *layers;
-    uint32_t slot; // of those that go on
+    uint32_t slot; // among the active paths
     struct sampler sampler;
     float3 origin;
     float3 direction; // unit
     float3 throughput;
-    float3 from;          // the vertex that the ray left
+    float3 from;          // the previous vertex
     float density;        // of `direction`, per steradian
-    bool scattered;       // there is such a vertex
-    bool spread;          // and some was no mirror nor lens
-    uint32_t number;      // of the sample, from 1
-    uint32_t vertex;      // number of scattering events so far
-    uint32_t reflections; // among them
-    uint32_t passed;      // surfaces since the last of them that the ray has passed through
+    bool scattered;       // there is a previous vertex
+    bool spread;          // and some vertex was neither mirror nor lens
+    uint32_t number;      // sample number, from 1
+    uint32_t vertex;      // scattering events so far
+    uint32_t reflections; // of these
+    uint32_t passed;      // surfaces passed since the last scattering event
     const struct material *media[MAX_MEDIA];
     uint32_t medium_count;
 };
 
-// Light on its way to a vertex, which a shadow ray decides about.
+// A contribution to a vertex, pending its shadow ray.
 struct aimed {
     float3 *layer;
-    float3 light; // that the layer gets if nothing stops it
+    float3 light; // added to the layer if unoccluded
     float3 direction;
     float transmittance;
 };
@@ -91,7 +91,7 @@ struct batch {
     const struct path_setup *setup;
     struct path_rays *rays;
     struct path paths[PATH_BATCH_SIZE];
-    struct path *active[PATH_BATCH_SIZE]; // those that go on
+    struct path *active[PATH_BATCH_SIZE]; // paths that continue
     uint32_t active_count;
     struct sampler_numbers numbers[PAIRS_OF_VERTEX]; // by slot
     struct ray_batch nearest;
@@ -159,7 +159,7 @@ static void log_ray(struct path_rays *rays, const struct ray *ray, bool is_shado
         rays->nearest++;
 }
 
-// Where light belongs after so many reflections.
+// Layer of light after so many reflections.
 static float3 *layer_of(const struct path *path, uint32_t reflections, bool from_environment)
 {
     uint32_t layer = REFERENCE_EMISSION;
@@ -178,14 +178,14 @@ static float offset_at(float3 position, float span)
     return OFFSET_OF_POSITION * largest + OFFSET_OF_SPAN * span;
 }
 
-// The point just off a surface, on its ray's side (1) or beyond (-1).
+// Point offset from a surface to its ray's side (1) or beyond (-1).
 static float3 step_off(const struct surface *surface, float side)
 {
     return surface->position +
            surface->geometric_normal * (side * offset_at(surface->position, surface->span));
 }
 
-// What the body that the path is in leaves of light over a distance.
+// Transmittance over a distance of the body that the path is in.
 static float3 absorbed(const struct path *path, float distance)
 {
     float3 left = splat3(1.0f);
@@ -198,8 +198,7 @@ static float3 absorbed(const struct path *path, float distance)
     return left;
 }
 
-// Lets the ray pass a surface, or be stopped by what covers it, by chance; the path carries the
-// weight of that.
+// Whether the ray passes the surface or is stopped by its coverage, at random; updates throughput.
 static bool passes(struct path *path, const struct surface *surface)
 {
     const struct material *material = surface->material;
@@ -211,7 +210,7 @@ static bool passes(struct path *path, const struct surface *surface)
     float through = max3(passed);
     if (!(through > 0.0f))
         return false;
-    // What stays is the layer's gloss and what it does not transmit.
+    // The layer reflects specularly, and what it does not transmit.
     float stays = surface->coverage * (max3(surface->f0) + 1.0f - surface->transmission);
     float probability = through / (through + stays);
     if (surface->transmission == 0.0f)
@@ -246,7 +245,7 @@ static void add_shadow_ray(struct path *path, const struct ray *ray, enum aim ai
     ray_batch_add(&batch->rays, ray);
 }
 
-// Sends light of a sample towards a surface: what arrives is added to the layer.
+// Casts a shadow ray for a light sample; if unoccluded, its light is added to the layer.
 static void send_light(struct path *path, const struct surface *surface,
                        const struct light_sample *sample, enum aim aim, float3 light, float3 *layer)
 {
@@ -259,7 +258,7 @@ static void send_light(struct path *path, const struct surface *surface,
     float3 origin = step_off(surface, beyond ? -1.0f : 1.0f), along = sample->direction;
     struct ray ray = {.max_distance = RAY_MAX_DISTANCE};
     if (isfinite(sample->distance)) {
-        // Aimed anew from the shifted origin, so that the ray meets nothing but at its end.
+        // Aims from the offset origin, so that the ray hits nothing before its end.
         float3 target = surface->position + sample->direction * sample->distance;
         along = target + sample->lift * offset_at(target, sample->span) - origin;
         ray.max_distance = 1.0f - 1e-5f;
@@ -275,8 +274,7 @@ static void send_light(struct path *path, const struct surface *surface,
     add_shadow_ray(path, &ray, aim, light, sample->direction, layer);
 }
 
-// Adds the light of a sample by what the surface scatters of it; aimed samples that rays find as
-// well are weighted against these.
+// Adds a light sample times the BSDF; samples that BSDF rays can find, too, get their MIS weight.
 static void scatter_light(struct path *path, const struct surface *surface, const struct bsdf *bsdf,
                           const struct light_sample *sample, enum aim aim)
 {
@@ -336,8 +334,7 @@ static void aim_at_lights(struct path *path, const struct surface *surface, cons
     }
 }
 
-// Index of refraction on the ray's side over that beyond. Changes the path's media to those beyond
-// only if `enter`.
+// Index of refraction on the ray's side over that beyond. Updates the path's media only if `enter`.
 static float cross_surface(struct path *path, const struct surface *surface, bool enter)
 {
     const struct material *material = surface->material;
@@ -353,10 +350,10 @@ static float cross_surface(struct path *path, const struct surface *surface, boo
     uint32_t own = count;
     while (own > 0 && path->media[own - 1] != material)
         own--;
-    uint32_t left = own > 0 ? own - 1 : count; // place of the body, if it was entered at all
+    uint32_t left = own > 0 ? own - 1 : count; // index of the body, if it was entered at all
     float outside = 1.0f;
     if (own > 0 && own < count)
-        outside = path->media[count - 1]->ior; // still within one that begins inside this one
+        outside = path->media[count - 1]->ior; // still inside one that begins within this one
     else if (left > 0)
         outside = path->media[left - 1]->ior;
     if (enter && own > 0) {
@@ -367,8 +364,7 @@ static float cross_surface(struct path *path, const struct surface *surface, boo
     return material->ior / outside;
 }
 
-// Turns the path into a random direction. False if that goes nowhere, or if the path ends by
-// chance.
+// Samples the path's next direction. False if nothing is scattered or the path is terminated.
 static bool scatter(struct path *path, const struct surface *surface, const struct bsdf *bsdf)
 {
     float u[2];
@@ -400,7 +396,7 @@ static bool scatter(struct path *path, const struct surface *surface, const stru
     return survives && path->vertex < MAX_VERTICES;
 }
 
-// Adds light that the path's ray has found, weighted against what aiming at it would have given.
+// Adds light that the path's ray has hit, MIS-weighted against next-event estimation.
 static void add_found(struct path *path, float3 radiance, float aimed_density,
                       bool from_environment)
 {
@@ -422,8 +418,7 @@ static void find_environment(struct path *path)
               aimed ? environment_density(environment, path->direction) : 0.0f, true);
 }
 
-// Adds light that the surface gives to the path, and turns that into the direction of its next ray.
-// False if it ends.
+// Adds the light at the surface and samples the next direction. False if the path ends.
 static bool meet(struct path *path, const struct surface *surface)
 {
     const struct path_setup *setup = path->setup;
@@ -439,7 +434,7 @@ static bool meet(struct path *path, const struct surface *surface)
                   aimed ? lights_emitter_density(snapshot->lights, surface, path->from) : 0.0f,
                   false);
     }
-    // The last reflection has been: only what goes through bodies matters now.
+    // After the last reflection only transmission through bodies counts.
     bool reflects = path->reflections == 0 || path->reflections - 1 < setup->max_bounces;
     if (material->unlit || !(reflects || material->refracts))
         return false;
@@ -455,7 +450,7 @@ static bool meet(struct path *path, const struct surface *surface)
     return scatter(path, surface, &bsdf);
 }
 
-// Takes a path to what its ray has found. False if it ends there.
+// Advances a path to its ray's hit. False if it ends there.
 static bool advance(struct path *path)
 {
     const struct snapshot *snapshot = path->setup->snapshot;
@@ -491,7 +486,7 @@ static void cast_paths(struct batch *batch, bool coherent)
     ray_scene_find_all(batch->setup->snapshot->rays, &batch->nearest);
 }
 
-// Adds all light that shadow rays let arrive.
+// Casts the shadow rays and adds all unoccluded light.
 static void cast_shadows(struct batch *batch)
 {
     for (uint32_t i = 0; i < AIMS; i++) {
@@ -505,7 +500,7 @@ static void cast_shadows(struct batch *batch)
     }
 }
 
-// All paths of a tile's pixels.
+// Starts the paths of a tile's pixels.
 static void start_paths(struct batch *batch, const struct path_tile *tile, uint32_t sample,
                         float3 *layers)
 {
@@ -524,7 +519,7 @@ static void start_paths(struct batch *batch, const struct path_tile *tile, uint3
             .origin = setup->eye,
             .number = sample + 1,
         };
-        // Even and odd samples are sequences of their own, whose difference tells the noise.
+        // Even and odd samples use independent sequences, whose difference estimates the noise.
         sampler_init(&path->sampler, setup->seed, y * setup->width + x, sample & 1u, sample >> 1);
         sampler_batch_set(&samplers, i, &path->sampler, USE_PIXEL);
         batch->active[i] = path;
@@ -542,7 +537,7 @@ static void start_paths(struct batch *batch, const struct path_tile *tile, uint3
     batch->active_count = count;
 }
 
-// Random numbers for the next vertex of all paths.
+// Draws the random numbers of all paths for the next vertex.
 static void draw_numbers(struct batch *batch)
 {
     for (uint32_t use = 0; use < PAIRS_OF_VERTEX; use++) {
@@ -567,7 +562,7 @@ void path_add_samples(const struct path_setup *setup, struct path_rays *rays,
     for (uint32_t i = 0; i < AIMS; i++)
         batch.aims[i].setup = setup;
     start_paths(&batch, tile, sample, layers);
-    // Rays from the camera, and from what it sees to a light, go much the same way.
+    // Camera rays, and their hits' shadow rays, are coherent.
     for (bool coherent = true; batch.active_count > 0; coherent = false) {
         cast_paths(&batch, coherent);
         draw_numbers(&batch);

@@ -8,15 +8,15 @@
 
 #include "renderer/clock.h"
 
-// Camera and scene rest when they have been the same for so long.
+// Camera and scene must be unchanged for so long.
 #define REST_MS 150.0
-// A new picture is fetched when it has this share more of samples, and no sooner than this after
-// the last: drawing and encoding take their time from tracing.
+// Fetches a new image when it has this factor more samples, and at most so often: drawing and
+// encoding take time from tracing.
 #define SAMPLES_STEP 1.2
 #define INTERVAL_MS  100.0
-// Of the builder, as of a reference's workers.
+// Of the builder and of the reference's workers.
 #define LOWEST_PRIORITY 19
-// Good enough, or as far as it goes.
+// Target, and limit.
 #define WANTED_NOISE   0.01
 #define WANTED_SAMPLES 16384u
 
@@ -64,8 +64,8 @@ static bool same_params(const struct live_reference *live, const struct live_par
            same_revisions(&live->revisions, &params->scene->revisions);
 }
 
-// Tells whether there is a snapshot of the document as it is; else has one built, as soon as the
-// last builder is done.
+// Whether there is a snapshot of the present scene. If not, starts a build once the last builder is
+// done.
 static bool has_snapshot(struct live_scene *scene, const struct live_params *params,
                          struct error *out_error)
 {
@@ -98,7 +98,7 @@ static bool has_snapshot(struct live_scene *scene, const struct live_params *par
     return false;
 }
 
-// False as long as there is no snapshot, too.
+// Also false while there is no snapshot.
 static bool start(struct live_reference *live, struct live_scene *scene, struct error *out_error)
 {
     const struct live_params *params = &live->params;
@@ -164,7 +164,7 @@ float live_reference_convergence(const struct live_reference *live)
         return 1.0f;
     if (live->shown_samples == 0 || !(live->progress.noise > 0.0))
         return 0.0f;
-    // Noise falls with the root of the samples.
+    // Noise falls with the square root of the samples.
     double ratio = WANTED_NOISE / live->progress.noise;
     double fraction = fmax(ratio * ratio, (double)live->shown_samples / WANTED_SAMPLES);
     return (float)fmin(fraction, 0.99);

@@ -1,7 +1,7 @@
-// The reference of one view, kept in step with a document that is being edited: it waits until
-// camera and scene rest, takes a snapshot, and has idle processors trace it.
+// The reference of one view, for a scene that is being edited: waits until camera and scene stop
+// changing, takes a snapshot, and traces it on idle processors.
 //
-// Runs on the render thread.
+// Render thread only.
 #ifndef VOXCAST_RENDERER_PATH_TRACER_PROGRESSIVE_H
 #define VOXCAST_RENDERER_PATH_TRACER_PROGRESSIVE_H
 
@@ -10,10 +10,10 @@
 #include "renderer/path_tracer/reference.h"
 #include "renderer/scene/scene.h"
 
-// Snapshots of a document, shared by its views; at most one at a time. They are built by a thread
-// of their own at lowest priority. Zero means none.
+// Snapshot of a scene, shared by its views; at most one at a time. Built on a thread of its own at
+// lowest priority. Zero-initialised: none.
 struct live_scene {
-    struct snapshot *snapshot; // NULL for none; being built while `builds`
+    struct snapshot *snapshot; // NULL for none; under construction while `builds`
     uint64_t scene_number;
     struct scene_revisions revisions;
     bool all_blinn_phong;
@@ -22,30 +22,30 @@ struct live_scene {
     int built; // set by the builder, atomically: 1 done, -1 failed
 };
 
-// Waits for the builder, if there is one.
+// Waits for the builder, if any.
 void live_scene_finish(struct live_scene *scene);
 
-// What a view wants to see.
+// What a view shows.
 struct live_params {
     const struct scene *scene;
-    uint64_t scene_number; // tells scenes apart that are loaded one after another
+    uint64_t scene_number; // tells apart scenes that were set one after another
     struct view_camera camera;
     uint32_t width, height;
     uint32_t max_bounces;
     bool all_blinn_phong;
-    bool direct_only; // shows light that has been reflected once at most
+    bool direct_only; // at most one reflection
 };
 
 struct live_reference {
-    struct reference *reference; // NULL until something rests
+    struct reference *reference; // NULL until camera and scene stop changing
     struct live_params params;   // newest
     struct scene_revisions revisions;
-    double changed_at_ms; // since when nothing has changed
+    double changed_at_ms; // time of the last change
     double shown_at_ms;
-    uint32_t shown_samples; // of the newest picture; 0: none
+    uint32_t shown_samples; // of the newest image; 0: none
     struct reference_progress progress;
-    float *rgba;    // the newest picture
-    bool converged; // no more samples are wanted
+    float *rgba;    // newest image
+    bool converged; // enough samples
 };
 
 void live_reference_finish(struct live_reference *live);
@@ -53,16 +53,16 @@ void live_reference_finish(struct live_reference *live);
 enum live_state {
     LIVE_WAITING,  // nothing to show yet
     LIVE_SAME,     // nothing better than what was shown last
-    LIVE_NEW,      // a new picture is in live->rgba
-    LIVE_FINISHED, // no better picture will come
+    LIVE_NEW,      // a new image is in live->rgba
+    LIVE_FINISHED, // no better image will come
 };
 
-// Starts anew if anything has changed, and fetches the newest picture if it is due. A failure is
-// told as a message and looks like waiting.
+// Restarts after a change, and fetches the newest image when due. A failure sets the message and
+// returns LIVE_WAITING.
 enum live_state live_reference_update(struct live_reference *live, struct live_scene *scene,
                                       const struct live_params *params, struct error *out_error);
 
-// 0 to 1: how much of what is wanted has been traced.
+// 0 to 1: progress towards the wanted noise.
 float live_reference_convergence(const struct live_reference *live);
 
 #endif

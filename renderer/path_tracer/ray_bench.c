@@ -8,9 +8,9 @@
 
 #include "renderer/path_tracer/path.h"
 
-// Rays are recorded and cast in squares of pixels, as the reference's tiles have them.
+// Rays are recorded and cast by squares of pixels, like the reference's tiles.
 #define TILE_EDGE 8u
-// Share of the rays that a thread takes at a time.
+// Threads take 1 / CHUNKS of the rays at a time.
 #define CHUNKS 256u
 
 struct ray_rate {
@@ -40,7 +40,7 @@ static void trace_all(const struct ray_rate *rate, struct path_rays *rays)
     uint32_t tiles_x = (setup.width + TILE_EDGE - 1) / TILE_EDGE;
     uint32_t tiles_y = (setup.height + TILE_EDGE - 1) / TILE_EDGE;
     float3 layers[TILE_EDGE * TILE_EDGE * REFERENCE_MAX_LAYERS];
-    memset(layers, 0, sizeof(layers)); // what adds up in them does not matter
+    memset(layers, 0, sizeof(layers)); // the accumulated values are not used
     for (uint32_t i = 0; i < tiles_x * tiles_y; i++) {
         struct path_tile tile = {.x = i % tiles_x * TILE_EDGE, .y = i / tiles_x * TILE_EDGE};
         tile.width = setup.width - tile.x < TILE_EDGE ? setup.width - tile.x : TILE_EDGE;
@@ -64,7 +64,7 @@ struct ray_rate *ray_rate_create(const struct reference_params *params, uint32_t
     long processors = sysconf(_SC_NPROCESSORS_ONLN);
     if (rate->params.threads == 0)
         rate->params.threads = processors > 0 ? (uint32_t)processors : 1;
-    // First count, then keep.
+    // First pass counts, second records.
     trace_all(rate, &rate->rays);
     uint64_t count = rate->rays.nearest + rate->rays.shadow;
     rate->rays = (struct path_rays){.log = malloc((count + 1) * sizeof(*rate->rays.log)),
@@ -102,7 +102,7 @@ static void *cast_chunks(void *context)
     }
 }
 
-// False if a thread cannot be had.
+// False if a thread cannot be created.
 static bool cast_bare(const struct ray_rate *rate, struct ray_rate_result *result)
 {
     struct bare_loop loop = {.rate = rate, .count = rate->rays.nearest + rate->rays.shadow};

@@ -14,16 +14,16 @@
 #include "renderer/path_tracer/path.h"
 
 #define TILE_EDGE 8u
-// Samples per pixel that a tile gets at a time, at most: tiles advance together.
+// Maximum samples per pixel that a tile advances at a time, so that tiles stay level.
 #define MAX_STEP 16u
-// A share of a processor that others hardly notice, but never none.
+// Takes little processor time from other processes, but never gets none.
 #define LOWEST_PRIORITY 19
-// Alpha, of the pictures: nothing here is transparent.
+// Alpha of the images.
 #define OPAQUE 1.0f
 
 struct tile {
-    uint32_t samples; // that its pixels have
-    bool busy;        // a worker is at it
+    uint32_t samples; // per pixel
+    bool busy;        // a worker has it
 };
 
 struct reference {
@@ -31,16 +31,16 @@ struct reference {
     struct snapshot *scene;
     bool low_priority;
     uint32_t tiles_x, tile_count;
-    // Of each pixel: sums of each layer (3 floats), and of the luminance of odd samples.
+    // Per pixel: sums of each layer (3 floats), and of the luminance of odd samples.
     uint32_t pixel_floats;
     float *sums;
-    pthread_mutex_t mutex;  // of all below, and of `sums`
-    pthread_cond_t work;    // there is more for workers
+    pthread_mutex_t mutex;  // protects everything below, and `sums`
+    pthread_cond_t work;    // signals work to the workers
     pthread_cond_t changed; // the target is reached, or work has stopped
     struct tile *tiles;
-    uint32_t target;    // samples per pixel that are wanted
-    uint32_t level;     // that tiles are brought to at present
-    uint32_t next_tile; // to be looked at
+    uint32_t target;    // wanted samples per pixel
+    uint32_t level;     // samples that tiles are being advanced to
+    uint32_t next_tile; // next to check
     uint32_t behind;    // tiles below `level`
     uint64_t nearest_rays, shadow_rays;
     uint32_t busy_count;
@@ -50,7 +50,7 @@ struct reference {
     pthread_t threads[REFERENCE_MAX_THREADS];
 };
 
-// What a worker has of a tile while it works.
+// A worker's copy of a tile.
 struct work {
     uint32_t number; // of the tile
     struct path_tile tile;
@@ -73,7 +73,7 @@ static uint32_t next_level(uint32_t level, uint32_t target)
     return target - level > step ? level + step : target;
 }
 
-// Goes to the next level that some tile has not reached; under the mutex.
+// Advances to the next level that some tile has not reached; call with the mutex held.
 static void advance_level(struct reference *reference)
 {
     reference->next_tile = 0;
@@ -91,7 +91,7 @@ static float *pixel_sums(const struct reference *reference, uint32_t x, uint32_t
     return reference->sums + pixel * reference->pixel_floats;
 }
 
-// Copies a tile's rows from the picture, or back; under the mutex.
+// Copies a tile's rows from the image, or back; call with the mutex held.
 static void copy_sums(const struct reference *reference, struct work *work, bool back)
 {
     size_t row_floats = (size_t)work->tile.width * reference->pixel_floats;
@@ -107,8 +107,8 @@ static uint32_t smaller(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-// Takes the next tile that is below the level and that nobody is at; under the mutex. False if
-// there is none at present.
+// Takes the next tile that is below the level and not busy; call with the mutex held. False if
+// there is none now.
 static bool take_tile(struct reference *reference, struct work *work)
 {
     if (atomic_load(&reference->cancelled))
@@ -143,7 +143,7 @@ static void add_layers(const struct reference *reference, const float3 *layers, 
     float3 total = splat3(0.0f);
     for (uint32_t layer = 0; layer < layer_count; layer++)
         total += layers[layer];
-    // What no arithmetic of floats can hold is left out rather than spoils the picture.
+    // Drops samples that overflowed, rather than spoil the image.
     if (!isfinite(total[0]) || !isfinite(total[1]) || !isfinite(total[2]))
         return;
     for (uint32_t layer = 0; layer < layer_count; layer++)
@@ -153,7 +153,7 @@ static void add_layers(const struct reference *reference, const float3 *layers, 
         sums[reference->pixel_floats - 1] += luminance3(total);
 }
 
-// False if cancelled meanwhile.
+// False if cancelled.
 static bool trace_tile(struct reference *reference, struct work *work)
 {
     uint32_t pixels = work->tile.width * work->tile.height;
@@ -170,7 +170,7 @@ static bool trace_tile(struct reference *reference, struct work *work)
     return true;
 }
 
-// Under the mutex.
+// Call with the mutex held.
 static void give_tile_back(struct reference *reference, struct work *work, bool done)
 {
     struct tile *tile = &reference->tiles[work->number];
@@ -184,7 +184,7 @@ static void give_tile_back(struct reference *reference, struct work *work, bool 
         reference->shadow_rays += work->rays.shadow;
     }
     if (tile->samples < reference->level) {
-        // Cancelled, or taken for a lower level: somebody is to look at it again.
+        // Cancelled, or taken for a lower level: have it checked again.
         if (work->number < reference->next_tile)
             reference->next_tile = work->number;
         pthread_cond_broadcast(&reference->work);
@@ -218,7 +218,7 @@ static void *worker(void *context)
     return NULL;
 }
 
-// Workers take no signals: these are for threads that know of them.
+// Workers block signals: these belong to the threads that handle them.
 static bool start_workers(struct reference *reference, uint32_t wanted)
 {
     sigset_t all, before;
@@ -294,7 +294,7 @@ void reference_destroy(struct reference **reference_slot)
     free(reference);
 }
 
-// Samples that every pixel has; under the mutex.
+// Minimum samples over all pixels; call with the mutex held.
 static uint32_t min_samples(const struct reference *reference)
 {
     uint32_t minimum = UINT32_MAX;
@@ -379,7 +379,7 @@ void reference_get_progress(struct reference *reference, struct reference_progre
             estimated = estimated && samples >= 2;
             if (samples < 2)
                 continue;
-            // The variance of a mean of two halves, from their difference.
+            // Variance of a mean of two halves, from their difference.
             double odd_count = samples / 2, even_count = samples - odd_count;
             double difference = odd / odd_count - (luminance - odd) / even_count;
             squared_error +=
@@ -401,7 +401,7 @@ void reference_get_picture(struct reference *reference, uint32_t layers, float *
 {
     const struct path_setup *setup = &reference->setup;
     for (uint32_t y = 0; y < setup->height; y++) {
-        pthread_mutex_lock(&reference->mutex); // row by row, so that workers need not wait long
+        pthread_mutex_lock(&reference->mutex); // row by row, so that workers wait only briefly
         for (uint32_t x = 0; x < setup->width; x++) {
             uint32_t samples =
                 reference->tiles[y / TILE_EDGE * reference->tiles_x + x / TILE_EDGE].samples;

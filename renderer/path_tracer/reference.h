@@ -1,13 +1,13 @@
-// Ground truth: a progressive path tracer on the CPU, with the scene, materials, lights, units and
-// camera of the real-time path: unbiased, but for caustics of points, where it is consistent (their
-// blur shrinks with the samples). See path.h for what it holds light to do.
+// The reference: a progressive CPU path tracer with the scene, materials, lights, units and camera
+// of the real-time renderer. Unbiased, except for caustics of point lights, where it is consistent
+// (their blur shrinks with the samples). See path.h for its light transport.
 //
-// A reference owns worker threads, which add samples to its picture while somebody wants them. The
-// same seed gives the same picture, bit by bit, whatever the number of threads and however often
-// work was stopped and taken up again, once a number of samples per pixel has been reached.
+// A reference owns worker threads, which add samples on request. At a given number of samples per
+// pixel the same seed gives the same image, bit by bit, for any number of threads and any
+// interruptions.
 //
-// All functions may be called from any thread, but only one at a time for each reference;
-// reference_stop() alone may be called while another waits.
+// Functions may be called from any thread, but only one at a time per reference; only
+// reference_stop() may be called while another waits.
 #ifndef VOXCAST_RENDERER_PATH_TRACER_REFERENCE_H
 #define VOXCAST_RENDERER_PATH_TRACER_REFERENCE_H
 
@@ -22,21 +22,21 @@
 #define REFERENCE_MAX_THREADS         256u
 #define REFERENCE_MAX_SAMPLES         (1u << 30)
 
-// How light is found: all estimators agree but for their noise. Points and directions can only be
-// aimed at, whatever the estimator.
+// How light is sampled: all estimators agree except for noise. Point and directional lights are
+// always sampled directly.
 enum reference_estimator {
-    REFERENCE_MIS,            // both ways, weighted
-    REFERENCE_LIGHT_SAMPLING, // by aiming at lights
-    REFERENCE_BSDF_SAMPLING,  // by following what surfaces scatter
+    REFERENCE_MIS,            // both, weighted
+    REFERENCE_LIGHT_SAMPLING, // light sampling only
+    REFERENCE_BSDF_SAMPLING,  // BSDF sampling only
 };
 
-// Pictures of light by how often it has been reflected; they sum up to all of it. What passes
-// through a surface is not reflected.
+// Images of light by number of reflections; their sum is all light. Passing through a surface does
+// not count as reflection.
 enum reference_layer {
-    REFERENCE_EMISSION,     // never: emission, background
-    REFERENCE_DIRECT,       // once, of lights and emitters
-    REFERENCE_SKY,          // once, of the environment
-    REFERENCE_FIRST_BOUNCE, // twice; further layers follow, the last of which holds all the rest
+    REFERENCE_EMISSION,     // none: emission, background
+    REFERENCE_DIRECT,       // one, from lights and emitters
+    REFERENCE_SKY,          // one, from the environment
+    REFERENCE_FIRST_BOUNCE, // two; more layers follow, the last of which holds the rest
     REFERENCE_MAX_LAYERS = REFERENCE_FIRST_BOUNCE + REFERENCE_MAX_BOUNCE_PICTURES
 };
 
@@ -46,21 +46,21 @@ enum reference_layer {
 #define REFERENCE_DIRECT_LAYERS   (REFERENCE_LAYER(REFERENCE_FIRST_BOUNCE) - 1u)
 #define REFERENCE_INDIRECT_LAYERS (~REFERENCE_DIRECT_LAYERS)
 
-// An immutable copy of what light depends on in a scene, made by the thread that may edit that: the
-// document may be edited as soon as snapshot_create() has returned. Counted: references of many
-// cameras and threads share one.
+// Immutable copy of what light depends on in a scene. Create it on the thread that may edit the
+// scene, which may be edited once snapshot_create() has returned. Reference counted: references of
+// many cameras and threads share it.
 struct scene;
 struct snapshot;
 
-// Copies the scene and builds its BVH; the caller holds one reference count.
-// `all_blinn_phong` says that every material is to be Blinn-Phong (SHADING_MODEL_BLINN_PHONG).
-// Cost: seconds for millions of triangles. NULL with a message when memory ends.
+// Copies the scene and builds its BVH; the caller gets one count. `all_blinn_phong`: shade every
+// material as Blinn-Phong (SHADING_MODEL_BLINN_PHONG). Cost: seconds for millions of triangles.
+// NULL with a message when memory runs out.
 struct snapshot *snapshot_create(const struct scene *scene, bool all_blinn_phong,
                                  struct error *out_error);
 
-// The same in two steps: a copy by the thread that may edit the scene, and the rest by any other,
-// before the snapshot is used. Built in the background, that is by the calling thread alone, so
-// that at low priority it takes nothing from others. False when memory ends.
+// The same in two steps: a copy on the thread that may edit the scene; then the rest on any thread,
+// before the snapshot is used. In the background it is built by the calling thread alone, so at low
+// priority it takes no time from others. False when memory runs out.
 struct snapshot *snapshot_copy(const struct scene *scene, bool all_blinn_phong,
                                struct error *out_error);
 bool snapshot_build(struct snapshot *snapshot, bool in_background, struct error *out_error);
@@ -69,57 +69,57 @@ struct snapshot *snapshot_retain(struct snapshot *snapshot); // any thread
 void snapshot_release(struct snapshot **snapshot);           // any thread; leaves NULL
 
 struct reference_params {
-    struct snapshot *scene; // the reference keeps a count of its own
+    struct snapshot *scene; // the reference takes a count of its own
     struct view_camera camera;
     uint32_t width, height;
-    uint32_t max_bounces;     // of indirect light: light is reflected at most 1 + max_bounces times
+    uint32_t max_bounces;     // of indirect light: at most 1 + max_bounces reflections
     uint32_t bounce_pictures; // 1 to REFERENCE_MAX_BOUNCE_PICTURES; 0: one for all bounces
     uint64_t seed;
     enum reference_estimator estimator;
-    uint32_t threads;  // 0: as many as there are processors
-    bool low_priority; // workers give way to all others (nice 19)
-    bool pixel_center; // rays through pixel centres; else all over the pixels (box filter)
+    uint32_t threads;  // 0: number of processors
+    bool low_priority; // workers run at nice 19
+    bool pixel_center; // rays through pixel centres; else over the whole pixel (box filter)
 };
 
 struct reference;
 
-// Starts workers, which sleep. NULL with a message when memory or threads run out.
+// Creates workers, which sleep. NULL with a message when memory or threads run out.
 struct reference *reference_create(const struct reference_params *params, struct error *out_error);
 
 // Stops within milliseconds.
 void reference_destroy(struct reference **reference);
 
-// Lets the workers go on until every pixel has `samples` samples in all. Returns at once.
+// Lets the workers run until every pixel has `samples` samples in total. Returns at once.
 void reference_start(struct reference *reference, uint32_t samples);
 
-// Waits until there are so many, work is stopped, or the time is over. True in the first case.
+// Waits until that is reached, work is stopped, or the time is up. True in the first case.
 bool reference_wait(struct reference *reference, double seconds);
 
-// Stops the workers within milliseconds and waits for that; what they were at in that time is lost.
+// Stops the workers within milliseconds and waits for them; unfinished tiles are discarded.
 void reference_stop(struct reference *reference);
 
 // Adds samples and waits for them. False if stopped by another thread.
 bool reference_render(struct reference *reference, uint32_t samples);
 
-// Samples that every pixel has. Cheap.
+// Minimum samples over all pixels. Cheap.
 uint32_t reference_get_samples(struct reference *reference);
 
 struct reference_progress {
-    uint32_t samples;      // every pixel has at least so many
-    uint64_t nearest_rays; // cast so far: along paths,
-    uint64_t shadow_rays;  // and towards lights
-    double noise;          // estimated standard error of a pixel's luminance (root mean square
-                           // over the picture), over the mean luminance; INFINITY before 2 samples
+    uint32_t samples;      // minimum per pixel
+    uint64_t nearest_rays; // so far: along paths,
+    uint64_t shadow_rays;  // and to lights
+    double noise; // estimated standard error of a pixel's luminance (root mean square over the
+                  // image), over the mean luminance; INFINITY before 2 samples
     double mean_luminance; // cd/m^2
 };
 
-// Cost: one pass over the picture.
+// Cost: one pass over the image.
 void reference_get_progress(struct reference *reference, struct reference_progress *out_progress);
 
 uint32_t reference_layer_count(const struct reference_params *params);
 
-// The sum of a set of layers so far: linear Rec.709 radiance in cd/m^2, width x height x 4 floats
-// (the last is 1), row 0 at the top. Black where a pixel has no sample yet.
+// Sum of a set of layers so far: linear Rec.709 radiance in cd/m^2, width x height x 4 floats (the
+// last is 1), row 0 at the top. Black where a pixel has no sample yet.
 void reference_get_picture(struct reference *reference, uint32_t layers, float *out_rgba);
 
 #endif

@@ -1,8 +1,7 @@
-// Low-discrepancy random numbers: for each use along a path (a dimension pair) the first two
-// dimensions of Sobol's sequence, its points shuffled and scrambled by hashing as Owen would
-// (Burley 2020, "Practical Hash-based Owen Scrambling"; the hash is that of Laine and Karras 2011
-// with Vegdahl's constants). Nothing is stored: a number depends on seed, pixel, sample and use
-// alone, whatever thread asks for it.
+// Low-discrepancy random numbers: for each use along a path (a pair of dimensions) the first two
+// dimensions of Sobol's sequence, Owen shuffled and scrambled by hashing (Burley 2020, "Practical
+// Hash-based Owen Scrambling"; the hash of Laine and Karras 2011 with Vegdahl's constants).
+// Stateless: a number depends on seed, pixel, sample and use only, not on the thread.
 #ifndef VOXCAST_RENDERER_PATH_TRACER_SAMPLER_H
 #define VOXCAST_RENDERER_PATH_TRACER_SAMPLER_H
 
@@ -11,7 +10,7 @@
 // One sample of one pixel.
 struct sampler {
     uint64_t key;            // of pixel and sequence
-    uint32_t index_reversed; // bits of the sample's number in the sequence
+    uint32_t index_reversed; // reversed bits of the sample's number in the sequence
 };
 
 // The finalizer of SplitMix64 (Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number
@@ -31,8 +30,8 @@ static inline uint32_t sampler_reverse_bits(uint32_t v)
     return (v >> 1 & 0x55555555u) | (v & 0x55555555u) << 1;
 }
 
-// Permutes numbers so that each bit depends on lower bits only: Owen's scrambling of the number
-// whose bits these are in reverse.
+// A permutation in which each bit depends on lower bits only: Owen scrambling of bit-reversed
+// numbers.
 static inline uint32_t sampler_scramble_reversed(uint32_t v, uint32_t seed)
 {
     v ^= v * 0x3d20adeau;
@@ -42,9 +41,9 @@ static inline uint32_t sampler_scramble_reversed(uint32_t v, uint32_t seed)
     return v ^ v * 0x53a22864u;
 }
 
-// Sobol's second dimension, bits in reverse. Bit k of it is the sum modulo 2 of the index's bits i
-// for which the binomial coefficient (i over k) is odd, that is (Lucas) those whose i has all bits
-// of k: a sum over supersets.
+// Sobol's second dimension, bit-reversed. Bit k is the sum modulo 2 of the index's bits i for which
+// the binomial coefficient (i over k) is odd, that is (Lucas) those whose i contains all bits of k:
+// a sum over supersets.
 static inline uint32_t sampler_sobol_second_reversed(uint32_t index)
 {
     index ^= index >> 1 & 0x55555555u;
@@ -59,7 +58,7 @@ static inline float sampler_to_unit(uint32_t bits)
     return (float)(int32_t)(bits >> 8) * 0x1p-24f;
 }
 
-// Sequences of different seed, pixel or `sequence` are independent of each other.
+// Sequences of different seed, pixel or `sequence` are independent.
 static inline void sampler_init(struct sampler *sampler, uint64_t seed, uint32_t pixel,
                                 uint32_t sequence, uint32_t index)
 {
@@ -73,7 +72,7 @@ static inline uint64_t sampler_key_of(const struct sampler *sampler, uint32_t us
     return sampler->key + use * 0x9e3779b97f4a7c15u;
 }
 
-// A number in [0, 1). Each use of a sample has a number of its own.
+// A number in [0, 1), different for each use of a sample.
 static inline float sampler_get_1d(const struct sampler *sampler, uint32_t use)
 {
     uint64_t key = sampler_mix(sampler_key_of(sampler, use));
@@ -83,7 +82,7 @@ static inline float sampler_get_1d(const struct sampler *sampler, uint32_t use)
         sampler_reverse_bits(sampler_scramble_reversed(index, (uint32_t)(key >> 32))));
 }
 
-// By a mixed key.
+// For a mixed key.
 static inline void sampler_get_2d_of(uint64_t key, uint32_t index_reversed, float *out_u,
                                      float *out_v)
 {
@@ -94,7 +93,7 @@ static inline void sampler_get_2d_of(uint64_t key, uint32_t index_reversed, floa
         sampler_scramble_reversed(sampler_sobol_second_reversed(index), second)));
 }
 
-// Two numbers in [0, 1) that are stratified together.
+// Two numbers in [0, 1), stratified together.
 static inline void sampler_get_2d(const struct sampler *sampler, uint32_t use, float out_u[2])
 {
     sampler_get_2d_of(sampler_mix(sampler_key_of(sampler, use)), sampler->index_reversed, &out_u[0],

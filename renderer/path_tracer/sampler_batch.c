@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-// Paths whose numbers are made together; divides SAMPLER_BATCH_SIZE.
+// Paths per vector loop; divides SAMPLER_BATCH_SIZE.
 #define GROUP 16u
 
 static inline __attribute__((always_inline)) void get_2d(const struct sampler_batch *restrict batch,

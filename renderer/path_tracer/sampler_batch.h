@@ -1,5 +1,4 @@
-// The random numbers of sampler.h for many paths at once, in vector registers as wide as the
-// processor has them: the same numbers, to the bit.
+// The random numbers of sampler.h for many paths at once, in vector registers: bit-identical.
 #ifndef VOXCAST_RENDERER_PATH_TRACER_SAMPLER_BATCH_H
 #define VOXCAST_RENDERER_PATH_TRACER_SAMPLER_BATCH_H
 
@@ -7,7 +6,7 @@
 
 #define SAMPLER_BATCH_SIZE 64u
 
-// Of each path: its sampler, and what it uses the numbers for.
+// Per path: its sampler and use.
 struct sampler_batch {
     uint64_t keys[SAMPLER_BATCH_SIZE]; // of sampler and use
     uint32_t indices_reversed[SAMPLER_BATCH_SIZE];
@@ -24,7 +23,7 @@ static inline void sampler_batch_set(struct sampler_batch *batch, uint32_t numbe
     batch->indices_reversed[number] = sampler->index_reversed;
 }
 
-// sampler_get_2d() for the first `count` paths, and for some beyond, of whatever is there.
+// sampler_get_2d() for the first `count` paths; writes some more, with arbitrary values.
 void sampler_batch_get_2d(const struct sampler_batch *batch, uint32_t count,
                           struct sampler_numbers *out_numbers);
 

@@ -7,7 +7,7 @@
 #include "renderer/path_tracer/environment.h"
 #include "renderer/path_tracer/lights.h"
 
-// Nearer to 1, a body's surface bends light less than floats can tell.
+// Nearer to 1, refraction is below float precision.
 #define MIN_REFRACTING_IOR 1.001f
 #define MIN_DIAGONAL_M     1e-6
 
@@ -42,7 +42,7 @@ static void instance_init(struct instance *instance, const float matrix[16])
         instance->normal_columns[axis] = -instance->normal_columns[axis];
 }
 
-// Reflectance at normal incidence; glTF keeps IOR 0 for "reflects everything".
+// Reflectance at normal incidence; in glTF IOR 0 means "reflects everything".
 static float f0_from_ior(float ior)
 {
     float ratio = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
@@ -57,7 +57,8 @@ static void fill_transmission(struct material *material, const struct scene_mate
     material->refracts = material->transmits && source->thickness_m > 0.0f;
     material->lets_through = material->blends || (material->transmits && !material->refracts);
     material->ior = fmaxf(source->ior, MIN_REFRACTING_IOR);
-    // KHR_materials_volume: Beer's law; the attenuation colour is what is left after the distance.
+    // KHR_materials_volume: Beer's law; the attenuation colour is the transmittance over the
+    // distance.
     for (int c = 0; c < 3; c++)
         material->absorption[c] =
             source->attenuation_distance_m > 0.0f

@@ -1,9 +1,8 @@
-// A scene as the path tracer sees it: an immutable copy of what light depends on.
+// Immutable copy of what light depends on in a scene, for the path tracer.
 //
-// Geometry, placements, materials, lights and environment are copied, pictures are shared by
-// reference count (they never change). Everything is moved so that the middle of the scene's bounds
-// lies in the origin, where floats are fine: `origin` has been subtracted. See reference.h for how
-// snapshots are made.
+// Copies geometry, transforms, materials, lights and environment; shares images, which never
+// change, by reference count. Coordinates are relative to `origin`, the centre of the scene's
+// bounds, where floats are precise. See reference.h for how snapshots are created.
 #ifndef VOXCAST_RENDERER_PATH_TRACER_SNAPSHOT_H
 #define VOXCAST_RENDERER_PATH_TRACER_SNAPSHOT_H
 
@@ -13,33 +12,33 @@
 #include "renderer/path_tracer/texture.h"
 #include "renderer/scene/ray_scene.h"
 
-// A node's placement.
+// A node's transform.
 struct instance {
     float3 columns[4];        // of world_from_local
-    float3 normal_columns[3]; // cofactors, which turn normals outwards of mirrored placements, too
-    float stretch;            // the most that it makes anything longer, or more
+    float3 normal_columns[3]; // cofactors, which keep normals outward when mirrored
+    float stretch;            // upper bound of the stretch
     bool mirrored;
 };
 
-// A material, prepared. Lane 3 of base_color is alpha.
+// A prepared material. Lane 3 of base_color is alpha.
 struct material {
     const struct scene_material *source;
     float3 base_color;
-    float3 emission; // cd/m^2, without its texture
+    float3 emission; // cd/m^2, without texture
     float3 specular_color;
-    float3 absorption; // per metre of the body's inside
+    float3 absorption; // inside the body, per metre
     float metallic, roughness, normal_scale;
     float f0;  // from the IOR
     float f90; // at grazing incidence, before the specular weight
-    float ior; // of bodies that refract, at least MIN_REFRACTING_IOR
+    float ior; // of refracting bodies, at least MIN_REFRACTING_IOR
     float specular;
     float transmission;
     bool unlit, blinn_phong, double_sided, masked, blends;
-    bool transmits;    // some of what a dielectric does not reflect goes through
+    bool transmits;    // transmits part of what the dielectric layer does not reflect
     bool refracts;     // transmits into a body; else through a thin wall
     bool lets_through; // straight: blended, or a thin wall
     bool emits;
-    float emitted_luminance; // mean over its texture
+    float emitted_luminance; // including its texture's mean
     uint32_t texture_mask;   // bits of enum scene_texture_slot
     struct texture textures[SCENE_TEXTURE_SLOT_COUNT];
 };
@@ -48,10 +47,10 @@ struct lights;
 struct environment;
 
 struct snapshot {
-    uint32_t references; // changed by atomic operations alone
-    struct scene *scene; // the copy; nodes without names, no cameras, no animations
+    uint32_t references; // atomic
+    struct scene *scene; // copy; without node names, cameras and animations
     struct ray_scene *rays;
-    struct instance *instances; // by node
+    struct instance *instances; // per node
     struct material *materials;
     struct lights *lights;
     struct environment *environment;

@@ -4,13 +4,13 @@
 
 #include "renderer/path_tracer/bsdf.h"
 
-// Vertex values interpolated within a triangle.
+// Vertex values of a triangle.
 struct corners {
     const struct scene_vertex *vertices[3];
     float weights[3];
 };
 
-// Four floats from anywhere within a vertex; the fourth belongs to the next field.
+// Loads four floats from inside a vertex; the fourth belongs to the next field.
 static float3 load_lanes(const float *values)
 {
     float3 lanes;
@@ -23,7 +23,7 @@ static float3 load_lanes(const float *values)
      load_lanes((corners)->vertices[1]->field) * (corners)->weights[1] +                           \
      load_lanes((corners)->vertices[2]->field) * (corners)->weights[2])
 
-// For vectors whose squared length floats cannot hold. False if there is no length at all.
+// For vectors whose squared length is out of range. False if the length is 0.
 static __attribute__((noinline)) bool normalize_extreme(float3 *vector)
 {
     float largest = max1(fabsf((*vector)[0]), max1(fabsf((*vector)[1]), fabsf((*vector)[2])));
@@ -52,7 +52,7 @@ static float3 get_texture(const struct material *material, enum scene_texture_sl
     return texture_get(texture, uv + (size_t)2 * texture->uv_set);
 }
 
-// Turns a unit normal (world, on the front) by the material's normal map.
+// Applies the material's normal map to a unit normal (world, on the front).
 static float3 mapped_normal(const struct surface *surface, const struct instance *instance,
                             const struct corners *corners, const float uv[4], float3 normal)
 {
@@ -104,8 +104,7 @@ static void fill_material(struct surface *surface, const struct corners *corners
         surface->emission = splat3(0.0f);
 }
 
-// Texture coordinates of both sets. The texels are on their way into the cache then, while the
-// geometry is worked out.
+// Texture coordinates of both sets. Prefetches the texels while the geometry is computed.
 static void locate_textures(const struct material *material, const struct corners *corners,
                             float out_uv[4])
 {

@@ -2,7 +2,7 @@
 
 #include <pthread.h>
 
-static float srgb_values[256]; // decoded
+static float srgb_values[256]; // sRGB decoded
 static pthread_once_t srgb_once = PTHREAD_ONCE_INIT;
 
 // IEC 61966-2-1.
@@ -20,7 +20,7 @@ void texture_init(struct texture *texture, const struct scene *scene,
 {
     pthread_once(&srgb_once, fill_srgb_values);
     float cosine = cosf(source->rotation_rad), sine = sinf(source->rotation_rad);
-    // KHR_texture_transform rotates counter-clockwise as seen with V pointing down.
+    // KHR_texture_transform rotates counter-clockwise with V pointing down.
     *texture = (struct texture){
         .image = scene->images[source->image],
         .is_color = is_color,
@@ -33,7 +33,7 @@ void texture_init(struct texture *texture, const struct scene *scene,
     };
 }
 
-// The texel of a row or column of `count` at an index that may lie anywhere.
+// Applies the wrap mode to a texel index of a row or column of `count`.
 static uint32_t wrap_index(int64_t index, uint32_t count, enum scene_wrap wrap)
 {
     if (index >= 0 && index < count)
@@ -57,13 +57,13 @@ static float3 texel_at(const struct texture *texture, uint32_t column, uint32_t 
     return rgb * (1.0f / 255.0f);
 }
 
-// Where a look-up falls: its first texel, and how far beyond it.
+// First texel of a look-up, and the fraction beyond it.
 struct texel_position {
     float left, top;
     float across, down;
 };
 
-// False for coordinates beyond all reason.
+// False for coordinates out of range.
 static inline bool find_texel(const struct texture *texture, const float uv[2],
                               struct texel_position *out_position)
 {

@@ -1,5 +1,5 @@
-// Vectors of three floats in a SIMD register, which the path tracer spends its time on. The fourth
-// lane is alpha where there is one, else it means nothing.
+// Vectors of three floats in a SIMD register, the path tracer's inner loop. The fourth lane is
+// alpha or undefined.
 #ifndef VOXCAST_RENDERER_PATH_TRACER_VECTOR_H
 #define VOXCAST_RENDERER_PATH_TRACER_VECTOR_H
 
@@ -46,14 +46,14 @@ static inline float length3(float3 a)
     return sqrtf(dot3(a, a));
 }
 
-// Unit length; a vector without length stays as it is.
+// Unit length; zero vectors stay unchanged.
 static inline float3 normalize3(float3 a)
 {
     float squared = dot3(a, a);
     return squared > 0.0f ? a * (1.0f / sqrtf(squared)) : a;
 }
 
-// Of numbers: where one is none, either may result. One instruction each, unlike fmaxf().
+// If one is NaN, either may be returned. One instruction each, unlike fmaxf().
 static inline float max1(float a, float b)
 {
     return a > b ? a : b;
@@ -66,7 +66,7 @@ static inline float min1(float a, float b)
 
 typedef int32_t mask3 __attribute__((vector_size(16)));
 
-// By lanes.
+// Per lane.
 static inline float3 smaller3(float3 a, float3 b)
 {
     mask3 mask = a < b;
@@ -85,7 +85,7 @@ static inline float max3(float3 a)
     return max1(a[0], max1(a[1], a[2]));
 }
 
-// The largest that either is along an axis, either way.
+// Maximum extent of either along an axis.
 static inline float span3(float3 a, float3 b)
 {
     return max3(larger3(larger3(a, -a), larger3(b, -b)));
@@ -107,8 +107,8 @@ static inline float3 clamp013(float3 a)
     return smaller3(larger3(a, (float3){0}), (float3){1.0f, 1.0f, 1.0f, 1.0f});
 }
 
-// Cosine and sine of a share of a full turn, 0 to 1, to 2e-7: Taylor's series within an eighth of a
-// turn of the nearest quarter, and no branches.
+// Cosine and sine of a fraction of a full turn, 0 to 1, to 2e-7: Taylor series within an eighth of
+// a turn of the nearest quarter, branch-free.
 static inline void turn1(float fraction, float *out_cosine, float *out_sine)
 {
     float quarter = fraction * 4.0f + 0.5f;
@@ -128,7 +128,7 @@ static inline void turn1(float fraction, float *out_cosine, float *out_sine)
     *out_sine = number & 2 ? -y : y;
 }
 
-// Two axes perpendicular to a unit normal and to each other (Duff et al. 2017, "Building an
+// Two axes perpendicular to a unit normal and each other (Duff et al. 2017, "Building an
 // Orthonormal Basis, Revisited").
 static inline void basis3(float3 n, float3 *out_x, float3 *out_y)
 {
