@@ -9,10 +9,10 @@
 #include "renderer/scene/texture_sample.h"
 #include "renderer/scene/vector3.h"
 
-// Embree's own range ends at about 1.8e18; instances that reach beyond this are left out.
+// Embree's own limit is about 1.8e18; instances that reach beyond this one are left out.
 #define RAY_SCENE_MAX_EXTENT 1e17
 
-// What the intersection filter of one primitive's geometry needs.
+// Data of one primitive's intersection filter.
 struct filter_data {
     const struct scene *scene;
     uint32_t primitive;
@@ -20,9 +20,9 @@ struct filter_data {
     bool lets_light_pass;
 };
 
-// What an occlusion query hands to the filters.
+// Data of an occlusion query for the filters.
 struct light_context {
-    struct RTCIntersectContext embree; // first, as Embree hands it on
+    struct RTCIntersectContext embree; // first, since Embree passes a pointer to it
     const struct ray_scene *ray_scene;
     ray_scene_stops_light *stops_light;
     void *context;
@@ -32,15 +32,15 @@ struct ray_scene {
     const struct scene *scene;
     RTCDevice device;
     RTCScene top;
-    RTCScene *meshes; // by mesh; NULL where no node uses it
+    RTCScene *meshes; // by mesh; NULL if no node uses it
     uint32_t mesh_count;
     struct filter_data *filters;   // by primitive
     bool *lets_light_pass;         // by material
-    uint32_t *instance_nodes;      // node by instance, which is the geometry's id in `top`
-    uint32_t *instance_primitives; // first of the instance's mesh
+    uint32_t *instance_nodes;      // node by instance; an instance is a geometry id of `top`
+    uint32_t *instance_primitives; // first primitive of the instance's mesh
     float *instance_extents;       // largest coordinate of the instance's mesh
     uint32_t instance_count;
-    uint32_t packet_width; // rays that the processor has registers for
+    uint32_t packet_width; // rays per vector register
 };
 
 static float alpha_at(const struct scene *scene, uint32_t primitive, uint32_t triangle, float u,
@@ -72,8 +72,7 @@ static bool is_hole(const struct filter_data *data, const struct RTCHit *hit)
     return alpha_at(scene, data->primitive, hit->primID, hit->u, hit->v) < material->alpha_cutoff;
 }
 
-// Fields of a hit, which come as those of rays do (rtcore_ray.h, whose functions are for C++
-// alone).
+// Fields of a hit, laid out like those of rays (rtcore_ray.h, whose functions are C++ only).
 enum hit_field { HIT_U = 3, HIT_V, HIT_TRIANGLE, HIT_GEOMETRY, HIT_INSTANCE };
 static_assert(sizeof(struct RTCRay16) == (size_t)RAY_HIT * 16 * sizeof(float), "");
 static_assert(sizeof(struct RTCRayHit16) == (size_t)RAY_BATCH_FIELDS * 16 * sizeof(float), "");
@@ -99,7 +98,7 @@ static struct RTCHit get_hit(const void *hits, uint32_t count, uint32_t number)
     };
 }
 
-// Refuses hits in the holes of alpha-masked materials.
+// Rejects hits in the holes of alpha-masked materials.
 static void filter_hit(const struct RTCFilterFunctionNArguments *arguments)
 {
     for (uint32_t i = 0; i < arguments->N; i++) {
@@ -139,7 +138,7 @@ static bool stops_ray(const struct RTCFilterFunctionNArguments *arguments, uint3
                               get_uint(arguments->ray, arguments->N, RAY_ID, number), &crossing);
 }
 
-// Refuses what light passes through, besides holes.
+// Also rejects hits on what light passes through.
 static void filter_occlusion(const struct RTCFilterFunctionNArguments *arguments)
 {
     for (uint32_t i = 0; i < arguments->N; i++) {
@@ -148,7 +147,7 @@ static void filter_occlusion(const struct RTCFilterFunctionNArguments *arguments
     }
 }
 
-// Filters cost time: only geometry that needs them has any.
+// Filters cost time: only geometry that needs one gets it.
 static void set_filters(RTCGeometry geometry, const struct filter_data *data)
 {
     bool any = data->is_masked || data->lets_light_pass;
@@ -301,7 +300,8 @@ void ray_scene_destroy(struct ray_scene **ray_scene_slot)
     free(ray_scene);
 }
 
-// Rows of the adjugate of the upper 3 x 3 part: the inverse but for the determinant, returned.
+// Rows of the adjugate of the upper 3 x 3 part: the inverse times the determinant, which is
+// returned.
 static double adjugate(const float matrix[16], double out_rows[3][3])
 {
     double columns[3][3];
@@ -314,7 +314,7 @@ static double adjugate(const float matrix[16], double out_rows[3][3])
     return vector3_dot(out_rows[0], columns[0]);
 }
 
-// Embree inverts the matrix: one that has no inverse, or reaches beyond its range, cannot be used.
+// Embree inverts the matrix: rejects matrices that are singular or exceed its range.
 static bool is_usable_matrix(const float matrix[16], float extent)
 {
     double rows[3][3];
@@ -370,13 +370,13 @@ void ray_scene_update_materials(struct ray_scene *ray_scene)
         ray_scene_update_transforms(ray_scene);
 }
 
-// The geometric normal in world space, unit length, on the side the ray comes from.
+// Geometric normal in world space, unit length, on the ray's side.
 static void fill_normal(const struct scene_node *node, const struct RTCHit *hit,
                         const float direction[3], float out_normal[3])
 {
     double rows[3][3];
     double normal[3] = {0};
-    // Normals transform by the inverse transposed; the determinant's sign is settled below.
+    // Normals transform by the inverse transpose; the determinant's sign is handled below.
     adjugate(node->world_from_local, rows);
     const double local[3] = {hit->Ng_x, hit->Ng_y, hit->Ng_z};
     for (int axis = 0; axis < 3; axis++) {
@@ -389,7 +389,7 @@ static void fill_normal(const struct scene_node *node, const struct RTCHit *hit,
         out_normal[axis] = length > 0 ? (float)(normal[axis] / (facing > 0 ? -length : length)) : 0;
 }
 
-// Field by field in place: a copy of what has just been written in parts would wait for the parts.
+// In place, field by field: loading a copy that was just written in parts would stall.
 static void fill_ray(struct RTCRay *target, const struct ray *ray)
 {
     target->org_x = ray->origin[0];
@@ -460,7 +460,7 @@ static void occlude_packet(RTCScene scene, const int *valid, uint32_t width,
     }
 }
 
-// Sets what all rays of a packet have in common.
+// Sets the fields that all rays of a packet share.
 static inline void fill_packet(float *packet, uint32_t width, uint32_t first)
 {
     uint32_t *words = (uint32_t *)packet;

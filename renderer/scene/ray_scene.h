@@ -1,4 +1,4 @@
-// Ray casts against a scene's triangles by Embree: picking, and the reference path tracer.
+// Ray casts against a scene's triangles with Embree, for picking and the path tracer.
 #ifndef VOXCAST_RENDERER_SCENE_RAY_SCENE_H
 #define VOXCAST_RENDERER_SCENE_RAY_SCENE_H
 
@@ -26,7 +26,7 @@ struct ray {
     float max_distance; // in units of the direction's length
 };
 
-// Where a ray meets a triangle, and no more: what a path tracer needs billions of times.
+// A closest hit reduced to what a path tracer needs billions of times.
 struct ray_crossing {
     uint32_t node;
     uint32_t primitive; // in scene->primitives
@@ -35,12 +35,12 @@ struct ray_crossing {
     float distance; // in units of the direction's length
 };
 
-// Whether a triangle stops the light of an occlusion query's ray (0 unless there are many); called
-// for those of materials that let light pass, in any order.
+// Whether a triangle blocks an occlusion query's ray (number `ray`; 0 for single rays). Called for
+// materials that let light pass, in any order.
 typedef bool ray_scene_stops_light(void *context, uint32_t ray,
                                    const struct ray_crossing *crossing);
 
-// Rays to be cast together, and what they have found.
+// Rays to cast together, and their results.
 #define RAY_BATCH_SIZE 64u
 enum ray_batch_field {
     RAY_ORIGIN,
@@ -55,49 +55,48 @@ enum ray_batch_field {
     RAY_BATCH_FIELDS = 20
 };
 struct ray_batch {
-    // Packets, laid out as Embree's: of each field as many as a packet has rays.
+    // Packets in Embree's layout: per field as many values as a packet has rays.
     _Alignas(64) float fields[RAY_BATCH_FIELDS * RAY_BATCH_SIZE];
-    uint32_t width; // rays of a packet, a power of two; 1: cast one by one
+    uint32_t width; // rays per packet, a power of two; 1: cast one by one
     uint32_t count;
 };
 
 struct ray_scene_params {
     const struct scene *scene;
-    const bool *lets_light_pass; // by material, copied; NULL: none does
-    bool calling_thread_only;    // builds slowly, by the calling thread and at its priority
+    const bool *lets_light_pass; // by material, copied; NULL: none lets light pass
+    bool calling_thread_only;    // builds slowly, on the calling thread alone and at its priority
 };
 
 // One Embree scene per mesh, instanced by the visible nodes. The scene must outlive the result.
-// Cost: building a BVH over all triangles. NULL when out of memory.
+// Cost: a BVH build over all triangles. NULL when out of memory.
 struct ray_scene *ray_scene_create(const struct scene *scene);
 struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *params);
 void ray_scene_destroy(struct ray_scene **ray_scene);
 
-// Takes over node placement and visibility from the scene; cheap. Call after edits.
+// Updates node transforms and visibility from the scene; cheap. Call after edits.
 void ray_scene_update_transforms(struct ray_scene *ray_scene);
 
-// Takes over from the scene which materials are alpha-masked: cheap unless that has changed, when
-// the meshes concerned are built anew. Call after edits of materials.
+// Updates which materials are alpha-masked: cheap unless that has changed; then rebuilds the
+// affected meshes. Call after edits of materials.
 void ray_scene_update_materials(struct ray_scene *ray_scene);
 
-// The nearest hit along the ray within (0, max_distance), through alpha-masked holes. False and
-// untouched output if there is none or an argument is not finite. Thread-safe between updates.
+// Closest hit within (0, max_distance); passes through alpha-masked holes. False, with the output
+// unchanged, on a miss or if an argument is not finite. Thread-safe between updates.
 bool ray_scene_intersect(const struct ray_scene *ray_scene, const float origin[3],
                          const float direction[3], float max_distance, struct ray_hit *out_hit);
 
-// Empties a batch, which is for this ray_scene alone. `coherent` says that neighbours in it will go
-// much the same way: packets of them cost little more than one ray, and results differ by rounding
-// at most.
+// Empties a batch, for use with this ray_scene only. `coherent`: adjacent rays are similar; then a
+// packet costs little more than one ray, and results differ by rounding at most.
 void ray_batch_init(struct ray_batch *batch, const struct ray_scene *ray_scene, bool coherent);
 
-// The first field of a ray; others follow at multiples of the width.
+// First field of a ray; the others follow at multiples of the width.
 static inline float *ray_batch_fields(const struct ray_batch *batch, uint32_t ray)
 {
     uint32_t within = ray & (batch->width - 1);
     return (float *)batch->fields + (size_t)(RAY_BATCH_FIELDS * (ray - within) + within);
 }
 
-// The batch holds less than RAY_BATCH_SIZE.
+// The batch must hold less than RAY_BATCH_SIZE.
 static inline void ray_batch_add(struct ray_batch *batch, const struct ray *ray)
 {
     uint32_t width = batch->width;
@@ -109,33 +108,31 @@ static inline void ray_batch_add(struct ray_batch *batch, const struct ray *ray)
     fields[RAY_DISTANCE * width] = ray->max_distance;
 }
 
-// After ray_scene_occlude_all(). Embree's sign of a hit is minus infinity.
+// Call after ray_scene_occlude_all(). Embree marks a hit with minus infinity.
 static inline bool ray_batch_is_occluded(const struct ray_batch *batch, uint32_t ray)
 {
     return ray_batch_fields(batch, ray)[RAY_DISTANCE * batch->width] < 0.0f;
 }
 
-// The nearest triangle that each ray meets. For trusted rays, and little more than Embree's own
-// cost.
+// Closest hits of all rays. For trusted rays; costs little more than Embree itself.
 void ray_scene_find_all(const struct ray_scene *ray_scene, struct ray_batch *batch);
 
-// Whether anything opaque lies along each ray, alpha-masked holes aside. Surfaces that let light
-// pass are asked by `stops_light`, and with NULL stop none. Thread-safe between updates.
+// Whether anything opaque lies along each ray; alpha-masked holes do not count. `stops_light`
+// decides for materials that let light pass; NULL: they block nothing. Thread-safe between updates.
 void ray_scene_occlude_all(const struct ray_scene *ray_scene, struct ray_batch *batch,
                            ray_scene_stops_light *stops_light, void *context);
 
-// What a ray of a batch has found. False if nothing.
+// Closest hit of a ray of a batch. False on a miss.
 bool ray_scene_get_crossing(const struct ray_scene *ray_scene, const struct ray_batch *batch,
                             uint32_t ray, struct ray_crossing *out_crossing);
 
-// Rays for measuring how fast Embree alone is on this scene: nearest hits, or occlusion.
+// Rays for benchmarking Embree alone on this scene: closest hits, or occlusion.
 struct ray_load {
     struct ray ray;
     bool is_shadow;
 };
 
-// Casts all of them in a bare loop, with no more around it than copying each ray. Returns how many
-// hit something.
+// Casts all of them in a bare loop that only copies each ray. Returns how many hit something.
 uint64_t ray_scene_cast_all(const struct ray_scene *ray_scene, const struct ray_load *rays,
                             uint64_t count);
 

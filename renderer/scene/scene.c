@@ -10,7 +10,7 @@
 
 #include "renderer/scene/placement.h"
 
-// Makes room for `extra` more elements; false at `limit` or when memory ends.
+// Reserves `extra` more elements; false at `limit` or when memory runs out.
 static bool grow(void **items, uint32_t *capacity, uint32_t count, uint32_t extra, uint32_t limit,
                  size_t item_size)
 {
@@ -181,7 +181,7 @@ static bool is_somewhere(const float position[3])
            fabsf(position[2]) <= SCENE_MAX_COORDINATE_M;
 }
 
-// Replaces values that are not finite; true if there was any.
+// Replaces values that are not finite; true if there were any.
 static bool repair_values(float *values, uint32_t count, float value)
 {
     bool repaired = false;
@@ -193,7 +193,7 @@ static bool repair_values(float *values, uint32_t count, float value)
     return repaired;
 }
 
-// Directions lose all their parts with one: those that are left point elsewhere.
+// One bad component invalidates a direction: the remaining ones would point elsewhere.
 static bool repair_direction(float direction[3])
 {
     bool repaired = repair_values(direction, 3, 0.0f);
@@ -202,7 +202,7 @@ static bool repair_direction(float direction[3])
     return repaired;
 }
 
-// Copies vertices; one that is nowhere comes to lie where `place` is, since no triangle keeps it.
+// Copies vertices. One with an invalid position gets that of `place`; no triangle keeps it.
 static void copy_vertices(struct scene *scene, const struct scene_vertex *vertices,
                           uint32_t vertex_count)
 {
@@ -225,7 +225,7 @@ static void copy_vertices(struct scene *scene, const struct scene_vertex *vertic
     }
 }
 
-// Copies the triangles all of whose corners are somewhere. Returns the number of indices.
+// Copies triangles whose corners all have valid positions. Returns the number of indices.
 static uint32_t copy_triangles(struct scene *scene, const struct scene_vertex *vertices,
                                uint32_t vertex_count, const uint32_t *indices, uint32_t index_count)
 {
@@ -293,7 +293,7 @@ uint32_t scene_add_node(struct scene *scene, const char *name, uint32_t parent)
     return scene->node_count++;
 }
 
-// The root node of a removed light that is to be used again, or a new one.
+// The root node of a removed light to be reused, or a new one.
 static uint32_t take_root_node(struct scene *scene, uint32_t light, const char *name)
 {
     uint32_t id = light < scene->light_count ? scene->lights[light].node : SCENE_NONE;
@@ -307,7 +307,7 @@ static uint32_t take_root_node(struct scene *scene, uint32_t light, const char *
     return id;
 }
 
-// A place in the list of lights: a new one, or that of a removed light once there are many.
+// Slot in the list of lights: a new one, or a removed light's once there are many.
 static uint32_t find_light_placement(const struct scene *scene)
 {
     uint32_t removed = 0, first = scene->light_count;

@@ -1,4 +1,4 @@
-// Copies of a document, for those that go on with it while it is edited.
+// Copies of a scene, for use while the original is edited.
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-// Edits of a built scene: each changes the data and counts up the revisions concerned.
+// Edits of a built scene: each changes the data and increments the affected revisions.
 #include "renderer/scene/scene.h"
 
 #include <assert.h>
@@ -86,7 +86,7 @@ void scene_remove_light(struct scene *scene, uint32_t light_id)
     light->removed = true;
     struct scene_node *node = &scene->nodes[light->node];
     node->light = SCENE_NONE;
-    // The node goes with its light unless it carries something else.
+    // Removes the node with its light unless it carries something else.
     bool has_child = false;
     for (uint32_t i = light->node + 1; i < scene->node_count; i++)
         has_child = has_child || scene->nodes[i].parent == light->node;
@@ -133,7 +133,8 @@ static uint32_t find_key(const struct scene_animation_channel *channel, float ti
     return low;
 }
 
-// Interpolates as glTF 2.0, appendix C. `out_value` has 3 or 4 components by the channel's path.
+// Interpolates as in glTF 2.0, appendix C. `out_value` has 3 or 4 components, depending on the
+// channel's path.
 static void sample_channel(const struct scene_animation_channel *channel, float time_s,
                            float out_value[4])
 {

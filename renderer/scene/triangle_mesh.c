@@ -13,7 +13,8 @@ void triangle_mesh_finish(struct triangle_mesh *mesh)
     *mesh = (struct triangle_mesh){0};
 }
 
-// Twice the area times the unit normal, in double so that tiny and huge triangles keep a direction.
+// Twice the area times the unit normal, in double, so that tiny and huge triangles keep a
+// direction.
 static void triangle_area_normal(const struct triangle_mesh *mesh, uint32_t first, double out[3])
 {
     double corners[3][3], edge1[3], edge2[3];
@@ -48,7 +49,7 @@ bool triangle_mesh_make_flat_normals(struct triangle_mesh *mesh)
     }
     for (uint32_t first = 0; first < mesh->index_count; first += 3) {
         double area_normal[3];
-        float normal[3] = {0, 1, 0}; // where the triangle has no area
+        float normal[3] = {0, 1, 0}; // for a triangle without area
         triangle_area_normal(mesh, first, area_normal);
         set_unit(normal, area_normal);
         for (uint32_t i = first; i < first + 3; i++) {
@@ -65,7 +66,7 @@ bool triangle_mesh_make_flat_normals(struct triangle_mesh *mesh)
     return true;
 }
 
-// Sets the normals that are zero from the triangles around them.
+// Computes zero normals from the adjacent triangles.
 static void collect_missing_normals(struct triangle_mesh *mesh, double (*sums)[3])
 {
     for (uint32_t first = 0; first < mesh->index_count; first += 3) {
@@ -107,7 +108,7 @@ uint32_t triangle_mesh_repair_normals(struct triangle_mesh *mesh)
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         float *normal = mesh->vertices[i].normal;
         if (normal[0] == 0 && normal[1] == 0 && normal[2] == 0) {
-            normal[1] = 1; // no triangle with an area, or no memory to look for one
+            normal[1] = 1; // no triangle has area, or no memory to look for one
         }
     }
     return bad;

@@ -10,7 +10,7 @@
 
 enum winding { WINDING_NONE, WINDING_POSITIVE, WINDING_NEGATIVE };
 
-// A triangle's edge between two welded vertices, by the corner of the triangle where it starts.
+// A triangle's edge between two welded vertices, stored under the corner where it starts.
 struct edge {
     uint64_t key; // smaller welded vertex << 32 | larger one
     uint32_t corner;
@@ -22,11 +22,11 @@ struct tangent_work {
     uint32_t *welded;    // per vertex: the first vertex equal to it
     uint8_t *windings;   // per triangle
     float (*along_u)[3]; // per triangle: unit direction of +U
-    uint32_t *group;     // per corner: parent in the union-find forest, in the end the root
+    uint32_t *group;     // per corner: parent in the union-find forest; finally the root
     struct edge *edges;  // three per triangle
     struct edge *edges_scratch;
     double (*sums)[3];     // per corner, used at roots
-    uint32_t *vertex_root; // per vertex: the group it serves, NO_VERTEX at first
+    uint32_t *vertex_root; // per vertex: its group, NO_VERTEX at first
     uint32_t *next_copy;   // per vertex and copy: the next copy of the same vertex
 };
 
@@ -62,7 +62,7 @@ static bool start_work(struct tangent_work *work)
            work->edges_scratch && work->sums && work->vertex_root && work->next_copy;
 }
 
-// Position, normal and UV: what must agree for two vertices to be one on the surface.
+// Position, normal and UV: vertices that agree in all of them are welded.
 static void weld_words(const struct tangent_work *work, uint32_t vertex, uint32_t out[8])
 {
     const struct scene_vertex *source = &work->mesh->vertices[vertex];
@@ -139,7 +139,7 @@ static void measure_triangle(struct tangent_work *work, uint32_t triangle)
     double length = vector3_length(along_u);
     work->windings[triangle] = WINDING_NONE;
     if (area != 0 && length > 0 && isfinite(length) && isfinite(area)) {
-        // V grows down the picture and green points up it: mirrored are the positive areas.
+        // V grows down the image and green points up it, so positive areas are the mirrored ones.
         work->windings[triangle] = area < 0 ? WINDING_POSITIVE : WINDING_NEGATIVE;
         double scale = (area < 0 ? -1 : 1) / length;
         for (int axis = 0; axis < 3; axis++) {
@@ -161,11 +161,12 @@ static void join(uint32_t *group, uint32_t a, uint32_t b)
 {
     uint32_t root_a = find_root(group, a);
     uint32_t root_b = find_root(group, b);
-    // The smaller root wins, so that the outcome does not depend on the order of edges.
+    // The smaller root wins, so that the result does not depend on the order of edges.
     group[root_a > root_b ? root_a : root_b] = root_a > root_b ? root_b : root_a;
 }
 
-// Least-significant-digit radix sort by key, 11 bits a pass; passes where all agree are skipped.
+// Least-significant-digit radix sort by key, 11 bits per pass; skips passes in which all keys
+// agree.
 static void sort_edges(struct tangent_work *work, uint32_t count)
 {
     for (int shift = 0; shift < 64; shift += 11) {
@@ -201,7 +202,7 @@ static uint32_t welded_at(const struct tangent_work *work, uint32_t corner)
     return work->welded[work->mesh->indices[corner]];
 }
 
-// Joins the corners at both ends of every edge shared by two triangles of like winding.
+// Joins the corners at both ends of every edge shared by two triangles of equal winding.
 static void group_corners(struct tangent_work *work)
 {
     uint32_t edge_count = 0;
@@ -215,7 +216,7 @@ static void group_corners(struct tangent_work *work)
     }
     sort_edges(work, edge_count);
     for (uint32_t first = 0, last; first < edge_count; first = last) {
-        uint32_t newest[3] = {NO_VERTEX, NO_VERTEX, NO_VERTEX}; // corner by winding
+        uint32_t newest[3] = {NO_VERTEX, NO_VERTEX, NO_VERTEX}; // newest corner by winding
         for (last = first; last < edge_count && work->edges[last].key == work->edges[first].key;
              last++) {
             uint32_t corner = work->edges[last].corner;
@@ -232,7 +233,7 @@ static void group_corners(struct tangent_work *work)
     }
 }
 
-// Projects `vector` into the plane of `normal` and makes it unit length; false if nothing is left.
+// Projects `vector` into the plane of `normal` and normalises it; false if nothing is left.
 static bool project_unit(double out[3], const double vector[3], const float normal[3])
 {
     double along = vector[0] * normal[0] + vector[1] * normal[1] + vector[2] * normal[2];
@@ -276,8 +277,8 @@ static void add_corner(struct tangent_work *work, uint32_t corner)
     }
 }
 
-// The copy of `vertex` that serves the group `root`, made on first use; copies go to the end of the
-// vertices, for which there is room.
+// The copy of `vertex` for the group `root`, created on first use; copies go to the end of the
+// vertices, where there is space.
 static uint32_t vertex_for_group(struct tangent_work *work, uint32_t vertex, uint32_t root)
 {
     if (work->vertex_root[vertex] == NO_VERTEX) {
@@ -307,7 +308,7 @@ static void write_tangents(struct tangent_work *work)
     for (uint32_t corner = 0; corner < mesh->index_count; corner++) {
         enum winding winding = work->windings[corner / 3];
         if (winding == WINDING_NONE) {
-            continue; // takes what its vertex has, as the texture is constant on it
+            continue; // gets its vertex's tangent, since UV is constant on it
         }
         uint32_t root = find_root(work->group, corner);
         uint32_t index = vertex_for_group(work, mesh->indices[corner], root);
@@ -349,7 +350,7 @@ bool triangle_mesh_make_tangents(struct triangle_mesh *mesh, uint32_t uv_set)
         memset(vertices[i].tangent, 0, sizeof(vertices[i].tangent));
     }
     write_tangents(&work);
-    triangle_mesh_repair_tangents(mesh); // unit length, and something where a sum vanished
+    triangle_mesh_repair_tangents(mesh); // unit length, and a valid value where a sum vanished
     done = true;
 
 finish:

@@ -1,5 +1,4 @@
-// Three-component vectors in double precision, for geometry that must keep its direction at any
-// scale.
+// Three-component vectors in double, for geometry that must keep its direction at any scale.
 #ifndef VOXCAST_RENDERER_SCENE_VECTOR3_H
 #define VOXCAST_RENDERER_SCENE_VECTOR3_H
 
