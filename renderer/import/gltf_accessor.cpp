@@ -37,7 +37,7 @@ static void check_view(const gltf_import &import, size_t index)
     }
 }
 
-// `count` elements `stride` bytes apart, from `offset` on, lie in the view.
+// Fails unless `count` elements, `stride` bytes apart from `offset` on, lie in the view.
 static void check_fits(const gltf_import &import, size_t accessor, const char *part, int view_index,
                        uint64_t offset, uint64_t count, uint64_t stride, uint64_t element)
 {
@@ -172,7 +172,7 @@ gltf_elements gltf_get_elements(gltf_import &import, int index)
     return elements;
 }
 
-// One component as glTF 2.0, 3.6.2.2 converts it; signed values go down to -1 exactly.
+// One component, converted as in glTF 2.0, 3.6.2.2; signed values reach exactly -1.
 static float read_component(const uint8_t *data, int component_type, bool normalized)
 {
     switch (component_type) {

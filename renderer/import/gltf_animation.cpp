@@ -4,7 +4,7 @@
 
 #include "renderer/import/gltf_import.hpp"
 
-// Floats of all channels together: some may share accessors, but not so that memory fills.
+// Limit of floats over all channels: channels may share accessors, but must not fill memory.
 #define GLTF_MAX_ANIMATION_FLOATS (32u << 20)
 
 static enum scene_interpolation interpolation_of(const std::string &name, size_t animation)
@@ -23,7 +23,7 @@ static enum scene_interpolation interpolation_of(const std::string &name, size_t
     return SCENE_LINEAR;
 }
 
-// The scene's path for one of glTF's; false for one that is not imported.
+// Converts an animation path; false for one that is not imported.
 static bool find_path(gltf_import &import, const std::string &name, enum scene_animation_path &out)
 {
     if (name == "translation") {

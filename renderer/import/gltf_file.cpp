@@ -22,7 +22,7 @@ struct byte_range {
     size_t size = 0;
 };
 
-// Chunks after JSON and BIN, and bytes after the declared length, are ignored as glTF 2.0 asks.
+// Ignores chunks after JSON and BIN, and bytes after the declared length, as glTF 2.0 requires.
 static void split_glb(const uint8_t *bytes, size_t size, byte_range *out_json, byte_range *out_bin)
 {
     if (size < 20) {
@@ -60,7 +60,7 @@ static void split_glb(const uint8_t *bytes, size_t size, byte_range *out_json, b
     }
 }
 
-// The JSON parser keeps a level of state for each nesting level: bounded before it runs.
+// The JSON parser keeps state for each nesting level: check the depth before it runs.
 static void check_depth(const byte_range &text)
 {
     uint32_t depth = 0;
@@ -146,7 +146,7 @@ static std::vector<uint8_t> decode_data_uri(const std::string &uri, const char *
     return bytes;
 }
 
-// The canonical path of a file that the scene names; fails if it may not be read.
+// Canonical path of a file that the scene names; fails if it must not be read.
 static std::string resolve_uri(const gltf_import &import, const std::string &uri, const char *what)
 {
     struct error error;
@@ -211,7 +211,7 @@ static void read_buffers(gltf_import &import, const byte_range &bin)
             import_fail("%s.byteLength is %llu, but its data has %zu bytes", what.c_str(),
                         (unsigned long long)length, buffer.size);
         }
-        buffer.size = length; // what follows is padding
+        buffer.size = length; // the rest is padding
         import.buffer_bytes += length;
         if (import.buffer_bytes > FILE_MAX_BYTES) {
             import_fail("the buffers exceed %llu bytes together", FILE_MAX_BYTES);
@@ -234,11 +234,11 @@ void gltf_read_document(gltf_import &import, const uint8_t *bytes, size_t size)
     gltf_check_extensions(import);
     read_buffers(import, bin);
     for (json &buffer : import.json["buffers"]) {
-        buffer.erase("uri"); // may be large, and is read
+        buffer.erase("uri"); // may be large, and has been read
     }
 }
 
-// Fills `request` with where the picture's bytes are; `owned` keeps those of data URIs.
+// Sets the location of the image's bytes in `request`; `owned` keeps those of data URIs.
 static void locate_image(gltf_import &import, const json &image, uint32_t index,
                          image_request &request, std::string &path, std::vector<uint8_t> &owned)
 {
@@ -267,7 +267,7 @@ static void locate_image(gltf_import &import, const json &image, uint32_t index,
     }
 }
 
-// The pictures that textures use; a KTX2 or WebP alternative is in the extension of its name.
+// Images that textures use; KTX2 and WebP alternatives are in extensions of these names.
 static std::vector<bool> find_used_images(const gltf_import &import, size_t count)
 {
     std::vector<bool> used(count);

@@ -99,7 +99,7 @@ static scene_texture make_texture(gltf_import &import, const texture_info &info)
     return make_texture(import, info.index, info.texCoord, info.extensions);
 }
 
-// A texture that an extension of the material names.
+// A texture named by an extension of the material.
 static scene_texture make_texture(gltf_import &import, const Value &extension, const char *name)
 {
     const Value &info = extension.Get(name);

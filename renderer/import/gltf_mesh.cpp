@@ -17,7 +17,7 @@ enum gltf_mode {
     GLTF_MODE_TRIANGLE_FAN = 6
 };
 
-// A triangle mesh that is freed when an exception passes.
+// A triangle mesh, freed on exceptions.
 struct owned_triangle_mesh {
     struct triangle_mesh mesh = {};
     owned_triangle_mesh() = default;
@@ -29,12 +29,12 @@ struct owned_triangle_mesh {
     }
 };
 
-// One primitive on its way: its attributes and the file's vertices that it uses.
+// A primitive under import: its attributes and the file's vertices that it uses.
 struct gltf_primitive {
     const tinygltf::Primitive &source;
     std::string location;
     gltf_elements positions;
-    std::vector<uint32_t> used; // positions in the attributes, by vertex of the mesh
+    std::vector<uint32_t> used; // attribute indices by vertex of the mesh
 };
 
 static int find_attribute(const gltf_primitive &primitive, const char *name)
@@ -43,7 +43,7 @@ static int find_attribute(const gltf_primitive &primitive, const char *name)
     return found == primitive.source.attributes.end() ? -1 : found->second;
 }
 
-// False if the primitive lacks the attribute; fails if it cannot be what it should.
+// False if the primitive lacks the attribute; fails if its type is wrong.
 static bool get_attribute(gltf_import &import, const gltf_primitive &primitive, const char *name,
                           uint32_t components_low, uint32_t components_high, gltf_elements &out)
 {
@@ -63,7 +63,7 @@ static bool get_attribute(gltf_import &import, const gltf_primitive &primitive, 
     return true;
 }
 
-// The corners of the primitive in the file's order, all below the number of vertices.
+// Corners of the primitive in the file's order, all below the number of vertices.
 static std::vector<uint32_t> read_corners(gltf_import &import, const gltf_primitive &primitive)
 {
     std::vector<uint32_t> corners;
@@ -103,7 +103,7 @@ static bool is_usable_position(const gltf_elements &positions, uint32_t index)
            std::fabs(position[2]) <= SCENE_MAX_COORDINATE_M;
 }
 
-// Triangle `index` of a list, strip or fan, wound as glTF 2.0, 3.7.2.1 says.
+// Triangle `index` of a list, strip or fan, wound as in glTF 2.0, 3.7.2.1.
 static void get_triangle(const std::vector<uint32_t> &corners, int mode, size_t index,
                          uint32_t out[3])
 {
@@ -160,8 +160,8 @@ static void keep_triangles(gltf_import &import, const gltf_primitive &primitive,
     }
 }
 
-// Renumbers `triangles` by first use, so that vertices nobody uses are not kept. The numbers live
-// in the import, as clearing them for each primitive would take time with the accessor's size.
+// Renumbers `triangles` by first use and drops unused vertices. The numbers are kept in the import,
+// since clearing them for each primitive would cost time proportional to the accessor.
 static void compact_vertices(gltf_import &import, gltf_primitive &primitive,
                              std::vector<uint32_t> &triangles)
 {
@@ -309,7 +309,7 @@ static void check_amplification(gltf_import &import, size_t index_count)
     }
 }
 
-// Triangles of the primitive, completed; adds the mesh first if `mesh_id` is not there yet.
+// Imports a primitive and completes its attributes; first adds the mesh if `mesh_id` is unset.
 static void import_primitive(gltf_import &import, const tinygltf::Mesh &mesh_source,
                              gltf_primitive &primitive, uint32_t &mesh_id)
 {

@@ -17,7 +17,7 @@
 
 #define GLTF_NO_PARENT (-1)
 
-// Room for one more element at the end of one of the scene's arrays.
+// Reserves one more element in one of the scene's arrays.
 template <typename item>
 static void reserve_one(item *&items, uint32_t count, uint32_t &capacity, uint32_t limit,
                         const char *what)
@@ -53,8 +53,8 @@ static std::vector<int> find_parents(const tinygltf::Model &model)
     return parents;
 }
 
-// `order` is a list of nodes: adds all below them, parents first. Without recursion, as chains can
-// be as long as the file.
+// Appends all descendants of the nodes in `order`, parents first. Iterative, since chains can be as
+// long as the file.
 static void add_descendants(const tinygltf::Model &model, std::vector<int> &order)
 {
     for (size_t next = 0; next < order.size(); next++) {
@@ -77,7 +77,7 @@ static void check_no_cycles(const tinygltf::Model &model, const std::vector<int>
     }
 }
 
-// The roots of the scene to show: the default one, else the first; all roots if there is none.
+// Roots of the default scene, else of the first; all root nodes if there is no scene.
 static std::vector<int> find_roots(gltf_import &import, const std::vector<int> &parents)
 {
     const tinygltf::Model &model = import.model;
@@ -134,7 +134,7 @@ static void quaternion_from_columns(const double columns[3][3], float out[4])
     }
 }
 
-// Column `axis` made perpendicular to the ones before it, and unit length; a made-up one where
+// Makes column `axis` perpendicular to those before it, and unit length; chooses any direction if
 // nothing is left of it.
 static void orthonormalize(double columns[3][3], int axis)
 {
@@ -147,7 +147,7 @@ static void orthonormalize(double columns[3][3], int axis)
     }
     double length = vector3_length(column);
     if (length < 1e-9) {
-        // Any unit axis that leans away from the others, made perpendicular in turn.
+        // The unit axis least parallel to the others, made perpendicular in turn.
         int best = 0;
         for (int candidate = 1; candidate < 3; candidate++) {
             double lean_best = 0, lean = 0;
@@ -300,7 +300,7 @@ static void add_camera(gltf_import &import, int index, uint32_t node)
     scene_camera camera = {};
     double fov_y_rad = source.perspective.yfov;
     if (source.type == "orthographic") {
-        // As tall at 10 m as the orthographic one is everywhere.
+        // The orthographic view's height, at a distance of 10 m.
         fov_y_rad = 2 * std::atan(std::fabs(source.orthographic.ymag) / 10);
         gltf_warn_once(import, "orthographic cameras are shown in perspective");
     } else if (source.type != "perspective") {

@@ -9,9 +9,9 @@ namespace
 {
 
 enum rule_kind {
-    RULE_INDEX,     // position in the top-level array `target`
-    RULE_INDICES,   // array of such
-    RULE_INDEX_MAP, // object of such
+    RULE_INDEX,     // index into the top-level array `target`
+    RULE_INDICES,   // array of indices
+    RULE_INDEX_MAP, // object of indices
     RULE_INTEGER,   // low .. high
     RULE_NUMBER,
     RULE_NUMBERS, // array of `high` numbers
@@ -19,10 +19,10 @@ enum rule_kind {
     RULE_STRINGS,
     RULE_BOOLEAN,
     RULE_OBJECT, // checked by `rules`
-    RULE_OBJECTS // array of such
+    RULE_OBJECTS // array of such objects
 };
 
-// What one property must be. A list of rules ends with a null name.
+// Rule for one property. A list of rules ends with a null name.
 struct rule {
     const char *name;
     rule_kind kind;
@@ -265,7 +265,7 @@ class json_checker
     {
     }
 
-    // The nesting of the rules, not of the file, bounds this recursion.
+    // Recursion is bounded by the nesting of the rules, not of the file.
     void check_object(json &object, const rule *rules, const std::string &location)
     {
         if (!object.is_object()) {
@@ -304,7 +304,7 @@ class json_checker
         return found != root.end() && found->is_array() ? found->size() : 0;
     }
 
-    // As an integer, written as 1 or 1.0.
+    // Accepts an integer written as 1 or 1.0.
     void check_integer(json &value, double low, double high, const std::string &location,
                        const rule &rule)
     {
@@ -498,7 +498,7 @@ static bool is_supported(const std::string &extension)
     return false;
 }
 
-// Required, but every texture that uses it has a picture in a core format as well.
+// Whether every texture that uses a required extension also has an image in a core format.
 static bool has_fallback(const json &root, const std::string &extension)
 {
     if (extension != "KHR_texture_basisu") {
@@ -521,8 +521,8 @@ static void refuse_extension(const json &object, const char *extension)
     }
 }
 
-// Compressed geometry is refused even where the file does not call it required: whether the plain
-// data beside it is a copy or a stub cannot be told.
+// Refuses compressed geometry even if the file does not require it: whether the plain data beside
+// it is a copy or a stub is unknown.
 static void check_compression(const json &root)
 {
     const json none = json::array();

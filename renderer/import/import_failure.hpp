@@ -1,4 +1,4 @@
-// The importers' inner error: thrown where the cause is known, turned into a struct error where the
+// The importers' internal error: thrown at the cause, and converted to struct error where the
 // importer returns to C.
 #ifndef VOXCAST_RENDERER_IMPORT_IMPORT_FAILURE_HPP
 #define VOXCAST_RENDERER_IMPORT_IMPORT_FAILURE_HPP
@@ -29,7 +29,8 @@ class import_failure : public std::exception
 // Throws import_failure with a printf-style message.
 [[noreturn]] void import_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-// `text` cut to `size` - 1 bytes between UTF-8 characters, control characters replaced by spaces.
+// `text` truncated to `size` - 1 bytes between UTF-8 characters, control characters replaced by
+// spaces.
 std::string import_short_name(const std::string &text, size_t size);
 
 #endif

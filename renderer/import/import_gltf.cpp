@@ -44,7 +44,7 @@ float gltf_clamped(gltf_import &import, double value, double low, double high, c
     return (float)clamped;
 }
 
-// Removes what is not imported, so that tinygltf sees only what was checked.
+// Removes what is not imported, so that tinygltf sees only checked data.
 static void strip_ignored(gltf_import &import, nlohmann::json &root)
 {
     for (const char *part : {"buffers", "images", "skins"}) {
@@ -79,8 +79,8 @@ static void strip_ignored(gltf_import &import, nlohmann::json &root)
     }
 }
 
-// tinygltf maps the checked JSON to structures. It gets neither buffers nor pictures, so that it
-// opens no file and decodes nothing.
+// Converts the checked JSON to tinygltf's structures. Without buffers and images tinygltf opens no
+// file and decodes nothing.
 static void map_to_model(gltf_import &import)
 {
     nlohmann::json structure = std::move(import.json);
@@ -111,7 +111,7 @@ static void import_document(gltf_import &import, const uint8_t *bytes, size_t si
     scene_update_world_transforms(import.scene);
 }
 
-// Takes the scene out of `import`; nothing thrown gets past here.
+// Moves the scene out of `import`; lets no exception escape.
 static struct scene *import_guarded(gltf_import &import, const uint8_t *bytes, size_t size,
                                     const char *label, struct error *out_error)
 {

@@ -1,4 +1,4 @@
-// The importers on bytes in memory: for scenes that arrive without a file, and for fuzzing.
+// The importers for bytes in memory: for scenes without a file, and for fuzzing.
 #ifndef VOXCAST_RENDERER_IMPORT_IMPORT_MEMORY_H
 #define VOXCAST_RENDERER_IMPORT_IMPORT_MEMORY_H
 
@@ -8,7 +8,7 @@
 #include "renderer/scene/scene.h"
 
 // As scene_import_gltf() and scene_import_obj(), on `size` bytes. `base_folder` is the canonical
-// folder where the files that it names may lie; NULL refuses them all.
+// folder of the files that they may name; NULL refuses all files.
 struct scene *scene_import_gltf_memory(const void *bytes, size_t size, const char *base_folder,
                                        struct error *out_error);
 struct scene *scene_import_obj_memory(const void *bytes, size_t size, const char *base_folder,

@@ -17,11 +17,11 @@ extern "C" {
 }
 
 #define OBJ_MAX_UV      1e6f
-#define OBJ_MAX_CORNERS 32768u // of one face: cutting it up may take time with the square
+#define OBJ_MAX_CORNERS 32768u // of one face: triangulation can take quadratic time
 
 #define OBJ_NO_INDEX INT64_MIN
 
-// Positions in the file's lists, from 0; OBJ_NO_INDEX where the face names none.
+// Indices into the file's lists, from 0; OBJ_NO_INDEX where the face has none.
 struct obj_corner {
     int64_t position;
     int64_t uv;
@@ -31,18 +31,18 @@ struct obj_corner {
 struct obj_face {
     uint32_t corner_first;
     uint32_t corner_count;
-    uint32_t smoothing; // group, 0 for flat
+    uint32_t smoothing; // group; 0: flat
 };
 
 struct obj_float3 {
     float value[3];
 };
 
-// A triangle corner's identity: corners that agree share a vertex.
+// Triangle corners with equal keys share a vertex.
 struct vertex_key {
     uint32_t position;
-    uint32_t uv;     // SCENE_NONE for none
-    uint64_t normal; // in the file, in the smooth normals, or the face's own
+    uint32_t uv;     // SCENE_NONE: none
+    uint64_t normal; // in the file's list, in the smooth normals, or the face's own
     bool operator==(const vertex_key &other) const
     {
         return position == other.position && uv == other.uv && normal == other.normal;
@@ -62,12 +62,12 @@ struct vertex_key_hash {
 #define NORMAL_SMOOTH (1ull << 62)
 #define NORMAL_FLAT   (1ull << 63)
 
-// What the parser's callbacks gather.
+// Data collected by the parser's callbacks.
 struct obj_document {
     obj_import *import;
     std::vector<obj_float3> positions, normals, uvs;
     std::vector<obj_corner> corners;
-    std::map<uint32_t, std::vector<obj_face>> faces; // by material in the scene
+    std::map<uint32_t, std::vector<obj_face>> faces; // by the scene's material
     std::vector<obj_face> *material_faces = nullptr;
     uint32_t smoothing = 0;
     uint64_t triangle_corners = 0;
@@ -109,7 +109,7 @@ static void on_uv(void *user, float x, float y, float)
     add_value(((obj_document *)user)->uvs, x, y, 0);
 }
 
-// An index as written (1 the first, -1 the newest, 0 or absent none) to one from 0.
+// Converts an index as written (1 is the first, -1 the newest, 0 or absent none) to one from 0.
 static int64_t resolve_index(int index, size_t count)
 {
     if (index == 0) {
@@ -157,7 +157,7 @@ static void on_material(void *user, const char *name, int)
     document.material_faces = &document.faces[id];
 }
 
-// Smoothing groups come as groups with a marked name; see obj_normalize_text().
+// Smoothing groups arrive as groups with a marked name; see obj_normalize_text().
 static void on_group(void *user, const char **names, int count)
 {
     obj_document &document = *(obj_document *)user;
@@ -199,7 +199,7 @@ static bool is_usable(const obj_document &document, const obj_face &face)
     return true;
 }
 
-// Newell's normal of a face, as long as twice its area.
+// Newell's normal of a face; its length is twice the area.
 static void face_normal(const obj_document &document, const obj_face &face, double out[3])
 {
     out[0] = out[1] = out[2] = 0;
@@ -248,7 +248,7 @@ static void collect_smooth_normals(obj_document &document)
     }
 }
 
-// One material's triangles under construction.
+// Triangles of one material under construction.
 struct obj_batch {
     std::vector<scene_vertex> vertices;
     std::vector<uint32_t> indices;
@@ -327,7 +327,7 @@ static void add_face(obj_document &document, obj_batch &batch, const obj_face &f
     }
 }
 
-// A copy of the batch in plain arrays, normals and tangents completed, appended to the mesh.
+// Copies the batch to plain arrays, completes normals and tangents, and appends it to the mesh.
 static void add_primitive(obj_document &document, obj_batch &batch, uint32_t material)
 {
     scene *target = document.import->scene;
@@ -357,7 +357,7 @@ static void add_primitive(obj_document &document, obj_batch &batch, uint32_t mat
     }
 }
 
-// One mesh with a primitive for each material, whatever the groups: fewer things to draw.
+// One mesh with a primitive per material, whatever the groups: fewer draws.
 static void add_geometry(obj_document &document)
 {
     scene *target = document.import->scene;
@@ -417,7 +417,7 @@ static void import_document(obj_import &import, const char *bytes, size_t size)
     scene_update_world_transforms(import.scene);
 }
 
-// Nothing thrown gets past here.
+// Lets no exception escape.
 static struct scene *import_guarded(obj_import &import, const char *bytes, size_t size,
                                     const char *label, struct error *out_error)
 {

@@ -16,10 +16,10 @@ extern "C" {
 #define OBJ_MAX_EMISSION      1e9f // cd/m^2
 #define OBJ_MASK_CUTOFF       0.5f
 
-// The pictures of all materials, by file name; the references are ours.
+// Images of all materials by file name; holds a reference to each.
 struct obj_pictures {
     std::map<std::string, struct image *> by_name;
-    std::map<std::string, uint32_t> ids; // in the scene, by what was made of which files
+    std::map<std::string, uint32_t> ids; // the scene's, by operation and files
     obj_pictures() = default;
     obj_pictures(const obj_pictures &) = delete;
     obj_pictures &operator=(const obj_pictures &) = delete;
@@ -121,8 +121,8 @@ static struct image *find_picture(const obj_pictures &pictures, const std::strin
     return found == pictures.by_name.end() ? nullptr : found->second;
 }
 
-// Points a slot at the picture that `make` gives, made and added once for each `key`. `make`
-// returns a reference for us, or NULL when out of memory.
+// Assigns a slot the image that `make` returns, made and added once per `key`. `make` returns a
+// reference for us, or NULL when out of memory.
 template <typename make_function>
 static void set_texture(obj_import &import, obj_pictures &pictures, scene_texture &slot,
                         const std::string &key, make_function make)
@@ -221,7 +221,7 @@ static void add_material(obj_import &import, obj_pictures &pictures,
 {
     scene_material material;
     scene_material_init(&material, import_short_name(source.name, 64).c_str());
-    material.double_sided = true; // OBJ says nothing of sides, and viewers show both
+    material.double_sided = true; // OBJ does not define sidedness, and viewers show both sides
     for (int channel = 0; channel < 3; channel++) {
         material.base_color[channel] = clamp_value(import, source.diffuse[channel], 0, 1, 0);
     }
@@ -233,7 +233,7 @@ static void add_material(obj_import &import, obj_pictures &pictures,
         material.roughness = clamp_value(import, source.roughness, 0, 1, 1);
         material.metallic = clamp_value(import, source.metallic, 0, 1, 0);
     } else {
-        // The roughness of the GGX lobe as wide as Phong's of exponent Ns.
+        // Roughness of a GGX lobe as wide as Phong's of exponent Ns.
         float exponent = clamp_value(import, source.shininess, 0, 1e6f, 0);
         material.roughness = std::sqrt(2 / (exponent + 2));
         material.metallic = 0;

@@ -4,7 +4,7 @@
 
 #include "renderer/import/obj_import.hpp"
 
-// A height of 1 is as deep as so many texels are wide; MTL leaves the scale open.
+// Depth of height 1, in texel widths; MTL leaves the scale open.
 #define OBJ_BUMP_DEPTH_TEXELS 4.0f
 
 static struct image *new_image(uint32_t width, uint32_t height)
@@ -17,7 +17,7 @@ static struct image *new_image(uint32_t width, uint32_t height)
     return image;
 }
 
-// The texel of `image` at the place of column x, row y in a picture of another size.
+// Texel of `image` at column x, row y of an image of another size.
 static const uint8_t *scaled_texel(const struct image *image, uint32_t x, uint32_t y,
                                    uint32_t width, uint32_t height)
 {
@@ -39,7 +39,7 @@ struct image *obj_merge_mask(const struct image *color, const struct image *mask
             for (int channel = 0; channel < 3; channel++) {
                 to[channel] = from ? from[channel] : 255;
             }
-            // Masks come as grey or as alpha: the smaller of the two is the one in use.
+            // Masks are either grey or alpha: the smaller value is the one in use.
             to[3] = std::min(hole[0], hole[3]);
         }
     }

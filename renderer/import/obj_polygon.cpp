@@ -11,7 +11,7 @@ static double cross(const point2 &a, const point2 &b, const point2 &c)
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Projects along the largest axis of Newell's normal, so that the polygon turns left.
+// Projects along the largest axis of Newell's normal, so that the polygon runs counter-clockwise.
 static std::vector<point2> project(const std::vector<const float *> &corners)
 {
     double normal[3] = {};
@@ -57,9 +57,9 @@ class ear_clipper
     {
         uint32_t left = (uint32_t)points.size();
         uint32_t at = 0;
-        uint32_t seen = 0; // corners looked at since the last ear
+        uint32_t seen = 0; // corners checked since the last ear
         while (left > 3) {
-            // A polygon that is not simple may run out of ears: from then on any corner must do.
+            // A polygon that is not simple may have no ear left: then clips any corner.
             if (seen < left && !is_ear(at)) {
                 at = next[at];
                 seen++;
@@ -79,7 +79,7 @@ class ear_clipper
   private:
     std::vector<point2> points;
     std::vector<uint32_t> next, previous;
-    std::vector<uint32_t> reflex; // corners that turn right: only they can lie in an ear
+    std::vector<uint32_t> reflex; // reflex corners: only they can lie in an ear
     uint32_t clipped = 0;
 
     double turn(uint32_t i) const
@@ -110,7 +110,7 @@ class ear_clipper
         return true;
     }
 
-    // Corners become convex as ears go: dropped from the list now and then.
+    // Clipping makes corners convex: removes these from the list now and then.
     void forget_convex()
     {
         if (++clipped % 16 != 0) {

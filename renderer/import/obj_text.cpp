@@ -5,8 +5,8 @@
 #define ENCODED_SPACE        '\x02'
 #define OBJ_MAX_INDEX_DIGITS 9
 
-// The next logical line from `at` on, with continuations joined, without comment and line ends, and
-// trimmed. Characters that end strings or mark our own encodings become '?'.
+// The next logical line from `at` on: continuations joined, comment and line ends removed, trimmed.
+// Characters that end strings or that our encodings use become '?'.
 static bool next_line(const char *bytes, size_t size, size_t &at, std::string &line)
 {
     line.clear();
@@ -67,7 +67,7 @@ static void check_index_digits(const std::string &line)
     }
 }
 
-// Not a number, or infinite: spelt with letters other than an exponent's.
+// NaN or infinity: contains letters other than an exponent's.
 static bool has_odd_number(const std::string &line)
 {
     return line.find_first_not_of("0123456789+-.eE ", 2) != std::string::npos;

@@ -17,7 +17,7 @@ static bool has_extension(const char *path, const char *extension)
            strcasecmp(path + length - extension_length, extension) == 0;
 }
 
-// A GLB is known by its magic, whatever its name.
+// GLB is detected by its magic, whatever the file's name.
 static bool has_glb_magic(const char *path)
 {
     char magic[4] = {0};
@@ -50,7 +50,7 @@ static struct scene *import_file(const char *path, struct error *out_error)
     return NULL;
 }
 
-// Glowing pictures (labels, gauges) light nothing; surfaces of constant emission are lights.
+// Emissive textures (labels, gauges) do not count as light; uniform emission does.
 static bool is_lit(const struct scene *scene)
 {
     if (scene->light_count > 0) {
@@ -68,7 +68,7 @@ static bool is_lit(const struct scene *scene)
     return false;
 }
 
-// A file that brings no light at all would be a black picture: give it an overcast sky.
+// A file without any light would render black: add an overcast sky.
 static void add_default_sky(struct scene *scene)
 {
     scene->environment = (struct scene_environment){

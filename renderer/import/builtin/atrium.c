@@ -1,5 +1,5 @@
-// The atrium: a courtyard between arcades on two floors, after no particular palace. 30 m x 15 m
-// inside its outer walls, 12 m high. Repeated parts are one mesh each, placed by many nodes.
+// The atrium: a courtyard between arcades on two floors, modelled on no particular palace. 30 m x
+// 15 m inside its outer walls, 12 m high. Each repeated part is one mesh, instanced by many nodes.
 #include "renderer/import/builtin/atrium.h"
 
 #include <math.h>
@@ -43,7 +43,7 @@ void atrium_bay_point(const struct atrium_bay *bay, float x, float z, float out_
     out_xz[1] = bay->z - s * x + c * z;
 }
 
-// A part in a bay: x, z in the bay, y in the world.
+// A part of a bay: x, z in the bay, y in the world.
 struct bay_part {
     const char *name;
     uint32_t mesh;
@@ -107,7 +107,7 @@ static bool add_bay(struct scene *scene, const struct atrium_parts *parts, int i
 }
 
 // The pier at the right end of a side, the corner of the galleries behind it, and the rib and
-// pilaster that the next bay would have brought.
+// pilaster that the next bay would have added.
 static bool add_corner(struct scene *scene, const struct atrium_parts *parts, int last_bay,
                        const uint32_t groups[2])
 {
@@ -178,7 +178,7 @@ static bool add_plants(struct scene *scene, uint32_t mesh)
     for (int i = 0; placed && i < ATRIUM_BAY_COUNT; i++) {
         struct atrium_bay bay = atrium_bay(i);
         float xz[2];
-        // Before every other column, and two in each corner of the court.
+        // In front of every other column, and two in each corner of the court.
         if (bay.number % 2 == 0)
             atrium_bay_point(&bay, bay.number ? -1.5f : -0.55f, -1.0f, xz);
         else
@@ -245,7 +245,7 @@ bool builtin_build_atrium(struct scene *scene)
 
 bool builtin_build_atrium_lights(struct scene *scene)
 {
-    // Dusk: the moon where the sun was.
+    // Dusk: a moon in the sun's position.
     return add_all_but_light(scene) && add_sky(scene, 0.004f, (float[3]){0.7f, 0.8f, 1.0f}) &&
            atrium_add_lanterns(scene);
 }

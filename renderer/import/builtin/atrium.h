@@ -1,4 +1,4 @@
-// What the files of the atrium share: its measures, materials and parts.
+// Shared by the atrium's files: dimensions, materials and parts.
 //
 // The courtyard's arcades stand on the rectangle +-COURT_HALF_X, +-COURT_HALF_Z (the "court line"),
 // around a court without roof; galleries of GALLERY_DEPTH run behind them on two floors. A "bay" is
@@ -42,10 +42,10 @@ enum atrium_material {
     ATRIUM_MATERIAL_COUNT
 };
 
-// Adds every material, in this order, so that their ids are the enum's values.
+// Adds every material in the enum's order, so that ids equal its values.
 bool atrium_add_materials(struct scene *scene);
 
-// Meshes of the building; false when memory ends.
+// Meshes of the building; functions return false when memory runs out.
 struct atrium_parts {
     uint32_t arch;    // arcade wall over one bay, y = 0 at the springing line
     uint32_t vault;   // groin vault over one bay, likewise
@@ -57,34 +57,34 @@ struct atrium_parts {
 };
 bool atrium_make_parts(struct scene *scene, struct atrium_parts *out_parts);
 
-// What goes around the whole court in one piece: floors, outer wall, cornices and roof.
+// Everything that runs around the whole court in one piece: floors, outer wall, cornices and roof.
 bool atrium_add_rings(struct scene *scene);
 
-// Meshes of what stands and hangs in it.
+// Meshes of the furnishings.
 struct atrium_furnishings {
-    uint32_t curtains[3]; // a pair in an arch of the ground floor, y = 0 at the ground
-    uint32_t banners[3];  // before an arch of the upper floor, likewise
+    uint32_t curtains[3]; // a pair in a ground-floor arch, y = 0 at the ground
+    uint32_t banners[3];  // in front of an upper-floor arch, likewise
     uint32_t plant, fountain;
 };
 bool atrium_make_furnishings(struct scene *scene, struct atrium_furnishings *out_furnishings);
 
-// A node that places a mesh; SCENE_NONE when memory ends.
+// Adds a node with a mesh; SCENE_NONE when memory runs out.
 uint32_t atrium_add_node(struct scene *scene, const char *name, uint32_t parent, uint32_t mesh,
                          const float position[3], float turn_rad);
 
-// Bays of the court's four sides, counted around; and their axes, where columns stand.
+// Bays on the court's four sides, numbered around it, and their axes, where columns stand.
 #define ATRIUM_BAY_COUNT (2 * (ATRIUM_BAYS_X + ATRIUM_BAYS_Z))
 
 struct atrium_bay {
-    float x, z;     // of its middle on the court line
-    float turn_rad; // turns +Z to the gallery
+    float x, z;     // centre on the court line
+    float turn_rad; // rotates +Z to the gallery
     int side;       // 0 to 3: +Z, +X, -Z, -X
-    int number;     // on its side, from 0
-    int side_bays;  // how many its side has
+    int number;     // along its side, from 0
+    int side_bays;  // bays on its side
 };
 struct atrium_bay atrium_bay(int index);
 
-// From a bay's own x, z to the world's.
+// From a bay's x, z to the world's.
 void atrium_bay_point(const struct atrium_bay *bay, float x, float z, float out_xz[2]);
 
 // 256 lanterns with a coloured light each.

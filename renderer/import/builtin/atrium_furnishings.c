@@ -1,4 +1,4 @@
-// What hangs and stands in the atrium: curtains, banners, plants and the fountain.
+// Furnishings of the atrium: curtains, banners, plants and the fountain.
 #include <math.h>
 
 #include "renderer/import/builtin/atrium.h"
@@ -6,7 +6,7 @@
 
 #define COUNT(items) (sizeof(items) / sizeof((items)[0]))
 
-// One half of a pair of curtains, gathered to its side by a tie.
+// One half of a pair of curtains, pulled to its side by a tie.
 struct curtain {
     double side; // -1 left, 1 right
     double low, high;
@@ -15,7 +15,7 @@ struct curtain {
 static void curtain_position(const void *context, double u, double v, double out_position[3])
 {
     const struct curtain *curtain = context;
-    const double tie = 0.4; // of the height
+    const double tie = 0.4; // fraction of the height
     double open = v > tie ? (v - tie) / (1.0 - tie) : 0.55 * (tie - v) / tie;
     open = open * open * (3.0 - 2.0 * open);
     double width = 0.26 + 0.88 * open;
@@ -57,7 +57,7 @@ static uint32_t make_curtains(struct scene *scene, uint32_t material)
 static void banner_position(const void *context, double u, double v, double out_position[3])
 {
     const double *heights = context;
-    double loose = 1.0 - v; // the rod holds it straight
+    double loose = 1.0 - v; // the rod keeps it straight
     double wave = 0.05 * sin(2.0 * M_PI * (2.2 * u + 0.3 * v)) +
                   0.03 * sin(2.0 * M_PI * (1.1 * v - 0.7 * u) + 0.6);
     // Two tongues at its lower end.
@@ -96,7 +96,7 @@ static uint32_t make_banner(struct scene *scene, uint32_t material)
 
 // A leaf on an arching stalk from the middle of a pot.
 struct leaf {
-    double turn, rise, droop; // direction, steepness at its base and how it bends over, radians
+    double turn, rise, droop; // direction, slope at the base and bend, radians
     double start, length, width;
 };
 
@@ -104,13 +104,13 @@ static void leaf_position(const void *context, double u, double v, double out_po
 {
     const struct leaf *leaf = context;
     double bend = fmax(leaf->droop * v, 1e-6);
-    // An arc of circle in the upright plane of its direction.
+    // A circular arc in the vertical plane of its direction.
     double out = leaf->length * v * (sin(leaf->rise) - sin(leaf->rise - bend)) / bend;
     double up = leaf->length * v * (cos(leaf->rise - bend) - cos(leaf->rise)) / bend;
     out += leaf->start * cos(leaf->rise);
     up += leaf->start * sin(leaf->rise);
     double side = leaf->width * (u - 0.5);
-    up -= 0.6 * fabs(side); // a keel along its middle
+    up -= 0.6 * fabs(side); // a crease along its middle
     out_position[0] = out * sin(leaf->turn) + side * cos(leaf->turn);
     out_position[1] = 0.5 + up;
     out_position[2] = out * cos(leaf->turn) - side * sin(leaf->turn);
@@ -134,7 +134,7 @@ static void add_leaves(struct mesh_builder *builder)
             .context = &leaf,
             .columns = 2,
             .rows = 6,
-            .texture_size = {1.0f, -1.0f}, // the stem is at the picture's bottom
+            .texture_size = {1.0f, -1.0f}, // the stem is at the bottom of the image
         };
         mesh_builder_add_surface(builder, &params);
     }

@@ -1,4 +1,4 @@
-// The atrium's 256 lanterns: a mesh per colour, and under each lantern a point light.
+// The atrium's 256 lanterns: a mesh per colour, and a point light below each.
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +7,7 @@
 
 #define LANTERN_COUNT     256
 #define LANTERN_COLORS    8
-#define LIGHT_DROP_M      0.26f // the light is below its lantern, which does not shade it
+#define LIGHT_DROP_M      0.26f // the light hangs below its lantern, which casts no shadow on it
 #define STRINGS           8
 #define LANTERNS_A_STRING 7
 
@@ -67,7 +67,7 @@ static bool make_lanterns(struct lantern_maker *maker)
     return true;
 }
 
-// Where a lantern hangs; `turn_rad` turns +Z to its wall.
+// Position of a lantern; `turn_rad` rotates +Z to its wall.
 struct lantern_placement {
     enum hanging hanging;
     float x, y, z, turn_rad;
@@ -146,7 +146,7 @@ static float string_height(float z)
     return 4.3f + 0.045f * z * z;
 }
 
-// On strings across the court, from cornice to cornice.
+// On cords across the court, from cornice to cornice.
 static bool add_strings(struct lantern_maker *maker)
 {
     const int pieces = 16;

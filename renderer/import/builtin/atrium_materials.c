@@ -1,4 +1,4 @@
-// The atrium's materials and the pictures on them.
+// The atrium's materials and their images.
 #include <math.h>
 #include <string.h>
 
@@ -16,8 +16,8 @@ static void tint(const float color[3], float shade, float out_rgba[4])
         out_rgba[c] = color[c] * shade;
 }
 
-// Distance from the nearest joint of a running bond, in units of the picture's edge, and the number
-// of the block.
+// Distance to the nearest joint of a running bond, in units of the image's edge, and the block's
+// number.
 static float bond_distance(float u, float v, uint32_t courses, uint32_t blocks, uint32_t out_id[2])
 {
     float row = v * (float)courses;
@@ -65,7 +65,7 @@ static float stone_height(float u, float v)
     return 0.003f * texture_turbulence(u, v, 24, 2, 22);
 }
 
-// 2 x 2 slabs, light and dark by turns, with veins where turbulence crosses its middle.
+// 2 x 2 slabs, alternately light and dark, with veins where turbulence crosses its mean.
 static float marble_vein(float u, float v, uint32_t seed)
 {
     float warp = texture_turbulence(u, v, 3, 4, seed);
@@ -95,7 +95,7 @@ static void marble_color(float u, float v, float out_rgba[4])
     }
 }
 
-// Roughness in green: polish worn in places.
+// Roughness in green: polish worn off in places.
 static void marble_roughness(float u, float v, float out_rgba[4])
 {
     float distance = marble_joint_distance(u, v);
@@ -139,7 +139,7 @@ static void wood_color(float u, float v, float out_rgba[4])
     tint(wood, 0.78f + 0.2f * bands + 0.2f * (grain - 0.5f), out_rgba);
 }
 
-// Plain weave: threads over and under by turns.
+// Plain weave: threads alternate over and under.
 static float cloth_height(float u, float v)
 {
     const float threads = 16.0f;
@@ -149,7 +149,7 @@ static float cloth_height(float u, float v)
     return 0.012f * (over ? warp : weft);
 }
 
-// One leaf, its stem at the bottom of the picture; alpha is its outline.
+// One leaf, its stem at the bottom of the image; alpha is its outline.
 static void leaf_color(float u, float v, float out_rgba[4])
 {
     float along = 1.0f - v, across = fabsf(2.0f * u - 1.0f);

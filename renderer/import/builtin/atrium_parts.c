@@ -1,4 +1,4 @@
-// The parts of which the atrium's building consists.
+// The parts of the atrium's building.
 #include <math.h>
 
 #include "renderer/import/builtin/atrium.h"
@@ -27,7 +27,7 @@ static uint32_t make_arch(struct scene *scene)
     };
     mesh_builder_add_arch_wall(&builder, &wall);
     uint32_t mesh = mesh_builder_commit_mesh(&builder, scene, "arch", ATRIUM_ASHLAR);
-    // Mouldings stand out from the wall, the keystone from the mouldings.
+    // Mouldings project from the wall, the keystone from the mouldings.
     mesh_builder_add_arch_band(&builder, (float[2]){1.185f, 1.185f}, (float[2]){1.3f, 1.3f},
                                ATRIUM_WALL_M + 0.06f, 32);
     mesh_builder_add_arch_band(&builder, (float[2]){1.29f, 1.29f}, (float[2]){1.41f, 1.41f},
@@ -145,7 +145,7 @@ static uint32_t make_upper_column(struct scene *scene)
     };
     struct mesh_builder builder;
     mesh_builder_init(&builder);
-    // The pedestal closes the balustrades on either side.
+    // The pedestal closes the balustrades on both sides.
     add_centered_box(&builder, 0.28f, 0.02f, 0.17f, 0.015f);
     add_centered_box(&builder, 0.235f, 0.16f, 0.86f, 0.012f);
     add_centered_box(&builder, 0.285f, 0.85f, 0.95f, 0.015f);
@@ -278,7 +278,7 @@ static bool add_ring(struct scene *scene, const struct ring *ring)
     return mesh != SCENE_NONE && builtin_add_mesh_node(scene, ring->name, mesh) != SCENE_NONE;
 }
 
-// Outlines across a gallery: `out` from the court line. Solids lie on the left hand.
+// Cross sections of a gallery: `out` from the court line. The solid is on the left.
 static const struct profile_point ground_floor[] = {
     {3.05f, 0.15f, 0}, {-0.5f, 0.15f, 0}, {-0.52f, 0.13f, 0}, {-0.52f, -0.02f, 0}};
 static const struct profile_point outer_wall[] = {{3.0f, 11.9f, 0}, {3.0f, 0.05f, 0}};

@@ -90,7 +90,7 @@ bool builtin_add_quad(struct scene *scene, const float corners[4][3], uint32_t m
         memcpy(vertex->position, corners[i], sizeof(vertex->position));
         memcpy(vertex->normal, normal, sizeof(vertex->normal));
         memcpy(vertex->tangent, tangent, sizeof(vec3));
-        vertex->tangent[3] = -1.0f; // v runs down the picture
+        vertex->tangent[3] = -1.0f; // v runs down the image
         vertex->uv[0][0] = vertex->uv[1][0] = i == 1 || i == 2 ? 1.0f : 0.0f;
         vertex->uv[0][1] = vertex->uv[1][1] = i >= 2 ? 1.0f : 0.0f;
         for (int c = 0; c < 4; c++)

@@ -1,7 +1,7 @@
-// The Cornell box by the measurements that Cornell University's Program of Computer Graphics
-// published, in metres (theirs are millimetres). The measured axes are x to the left, y up, z into
-// the box; here x points right, y up and z out of the box towards the viewer. Spectra are replaced
-// by the customary linear RGB stand-ins.
+// The Cornell box, as measured and published by Cornell University's Program of Computer Graphics,
+// in metres (originally millimetres). The measured axes are x left, y up, z into the box; here x
+// points right, y up and z out of the box, towards the viewer. Spectra are replaced by the usual
+// linear RGB values.
 #include "renderer/import/builtin/builtin.h"
 
 #include <stddef.h>
@@ -20,7 +20,7 @@ static const struct {
     float corners[4][3];
 } room[ROOM_PARTS] = {
     [FLOOR] = {"floor", white, {{552.8f, 0, 0}, {0, 0, 0}, {0, 0, 559.2f}, {549.6f, 0, 559.2f}}},
-    [CEILING] = {"ceiling", white, {{0}}}, // cut around the light
+    [CEILING] = {"ceiling", white, {{0}}}, // has a hole for the light
     [BACK_WALL] =
         {"back wall",
          white,
@@ -52,7 +52,7 @@ static const float tall_block[5][4][3] = {
     {{265, 0, 296}, {265, 330, 296}, {423, 330, 247}, {423, 0, 247}},
 };
 
-// From published millimetres to metres, centred on the floor's middle.
+// From published millimetres to metres, with the origin at the floor's centre.
 static void to_metres(const float published[3], float out_position[3])
 {
     out_position[0] = (278.0f - published[0]) * 1e-3f;
@@ -70,7 +70,7 @@ static bool add_published_quad(struct scene *scene, const float published[4][3],
 
 static bool add_ceiling(struct scene *scene, uint32_t material)
 {
-    // Four strips around the light's rectangle, so that no two surfaces share a plane and a place.
+    // Four strips around the light's rectangle, so that no surfaces overlap in one plane.
     const float y = 548.8f;
     const float outer[4][2] = {{556, 0}, {556, 559.2f}, {0, 559.2f}, {0, 0}};
     const float inner[4][2] = {{343, 227}, {343, 332}, {213, 332}, {213, 227}};
@@ -125,7 +125,7 @@ bool builtin_add_cornell_room(struct scene *scene)
     float eye[3], target[3];
     to_metres((const float[3]){278, 273, -800}, eye);
     to_metres((const float[3]){278, 273, 279.6f}, target);
-    // 25 mm of film behind a lens of 35 mm.
+    // 25 mm of film behind a 35 mm lens.
     return scene_add_camera(scene, "published view", eye, target, (const float[3]){0, 1, 0},
                             0.68597f) != SCENE_NONE;
 }

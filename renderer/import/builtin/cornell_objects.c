@@ -1,6 +1,6 @@
-// Four objects in the Cornell room, one each of polished metal, clear glass, glossy lacquer and
-// rough stone, and a dim warm light to move about; or all four of one kind, so that what goes wrong
-// with one kind of light transport shows by itself.
+// Four objects in the Cornell box, of polished metal, clear glass, glossy lacquer and rough stone,
+// and a dim warm light to move; or all four of one kind, to isolate errors of one kind of light
+// transport.
 #include <math.h>
 
 #include "renderer/import/builtin/builtin.h"
@@ -15,7 +15,7 @@
 #define GLOSSY_ROUGHNESS 0.15f
 #define GLOW_RADIANCE    3.0f // cd/m^2
 
-// What all four objects are made of.
+// Material of the four objects.
 enum object_kind { KIND_OWN, KIND_DIFFUSE, KIND_GLOSSY, KIND_GLASS, KIND_EMISSIVE };
 
 struct object {
@@ -46,7 +46,7 @@ static double signed_power(double base, double exponent)
     return copysign(pow(fabs(base), exponent), base);
 }
 
-// A superellipsoid between cube and ball, with shallow dents as of hewn stone.
+// A superellipsoid between cube and sphere, with shallow dents as of hewn stone.
 static void stone_position(const void *context, double u, double v, double out_position[3])
 {
     (void)context;
@@ -102,7 +102,7 @@ static void describe_objects(struct object objects[4])
     glm_vec3_copy((vec3){0.55f, 0.47f, 0.36f}, stone->material.base_color);
 }
 
-// Makes an object's material one of a kind; colours stay, but glass has none.
+// Changes an object's material to a kind; keeps the colour, except for glass.
 static void dress(struct object *object, enum object_kind kind)
 {
     struct scene_material *material = &object->material;
@@ -110,7 +110,7 @@ static void dress(struct object *object, enum object_kind kind)
         return;
     material->metallic = 0.0f;
     material->transmission = kind == KIND_GLASS ? 1.0f : 0.0f;
-    // The pot is open: its wall is a thin one.
+    // The pot is open: it has a thin wall.
     bool closed = !material->double_sided;
     material->thickness_m = kind == KIND_GLASS && closed ? 2.0f * GLASS_RADIUS_M : 0.0f;
     material->roughness = 1.0f;
@@ -128,7 +128,7 @@ static void dress(struct object *object, enum object_kind kind)
     }
 }
 
-// The objects alone are to shine.
+// Only the objects emit light.
 static void put_out_light(struct scene *scene)
 {
     for (uint32_t i = 0; i < scene->material_count; i++)

@@ -1,7 +1,7 @@
 // A white furnace: a closed box whose matte walls reflect half and emit 1 cd/m^2, around a matte
-// ball that reflects half and emits nothing. Without the ball every wall comes to L = 1 + L / 2 = 2
-// cd/m^2 after all bounces; the ball takes a few percent of that. It sees walls alone, so that it
-// is an even disc of half their radiance. Unevenness is an error of the renderer.
+// sphere that reflects half and emits nothing. Without the sphere every wall converges to L = 1 + L
+// / 2 = 2 cd/m^2; the sphere takes a few percent of that. The sphere sees only walls, so it must be
+// a uniform disc of half their radiance. Any variation is an error of the renderer.
 #include "renderer/import/builtin/builtin.h"
 #include "renderer/import/builtin/mesh_builder.h"
 

@@ -1,4 +1,4 @@
-// Spheres in rows of one material each, roughness rising from left to right, lit by a sun, a
+// Rows of spheres, a material per row, with roughness rising from left to right; lit by the sun, a
 // rectangular light and a sky.
 #include <stdio.h>
 

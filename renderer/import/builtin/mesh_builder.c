@@ -47,7 +47,7 @@ uint32_t mesh_builder_commit_mesh(struct mesh_builder *builder, struct scene *sc
     return mesh;
 }
 
-// Room for one more element; doubles. False, remembered, when memory ends.
+// Reserves one more element; doubles the capacity. False, and sets `failed`, when memory runs out.
 static bool reserve(struct mesh_builder *builder, void **items, uint32_t *capacity, uint32_t count,
                     size_t item_size)
 {
@@ -155,8 +155,8 @@ void mesh_builder_add_box(struct mesh_builder *builder, const float low[3], cons
     }
 }
 
-// The box's corner (bit 0: high x, ...) moved in along two axes, so that it lies on the face that
-// looks along `axis`.
+// The box's corner (bit 0: high x, ...) moved inwards along two axes, so that it lies on the face
+// towards `axis`.
 static void inset_corner(const float low[3], const float high[3], float bevel, int corner, int axis,
                          float out[3])
 {
@@ -183,7 +183,7 @@ void mesh_builder_add_beveled_box(struct mesh_builder *builder, const float low[
                 face_corner(inner_low, inner_high, axis, side, k, corners[k]);
             mesh_builder_add_quad(builder, corners);
         }
-        // The four cut edges along this axis lie between the faces of the other two.
+        // The four bevelled edges along this axis lie between the faces of the other two.
         for (int edge = 0; edge < 4; edge++) {
             int corner = (edge & 1) << first | (edge >> 1) << second;
             float corners[4][3];
@@ -222,7 +222,7 @@ static void difference_normal(const struct surface_params *params, double u, dou
 {
     const double step = 1e-4;
     double from[3], to[3], along[2][3];
-    // Poles have no normal of their own; a point close by stands in.
+    // Poles have no normal: uses that of a point nearby.
     u = fmin(fmax(u, 2.0 * step), 1.0 - 2.0 * step);
     v = fmin(fmax(v, 2.0 * step), 1.0 - 2.0 * step);
     for (int i = 0; i < 2; i++) {

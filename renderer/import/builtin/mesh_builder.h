@@ -1,9 +1,9 @@
-// Builds triangle lists for the built-in scenes: a small set of shapes, each with normals, texture
+// Builds triangle lists for the built-in scenes from a small set of shapes, with normals, texture
 // coordinates in metres and counter-clockwise fronts.
 //
-// A builder collects shapes, each under the current placement, until mesh_builder_commit() makes
-// them one primitive. When memory ends it remembers so and the commit fails; nothing else has to
-// be checked.
+// A builder collects shapes, each under the current transform, until mesh_builder_commit() turns
+// them into one primitive. An allocation failure is remembered and makes the commit fail; nothing
+// else needs checking.
 #ifndef VOXCAST_RENDERER_IMPORT_BUILTIN_MESH_BUILDER_H
 #define VOXCAST_RENDERER_IMPORT_BUILTIN_MESH_BUILDER_H
 
@@ -15,21 +15,21 @@
 struct mesh_builder {
     struct triangle_mesh mesh; // owned
     uint32_t vertex_capacity, index_capacity;
-    mat4 placement; // rotation, translation and uniform scale of what is added next
-    bool failed;    // memory ended
+    mat4 placement; // rotation, translation and uniform scale of shapes added next
+    bool failed;    // out of memory
 };
 
 void mesh_builder_init(struct mesh_builder *builder);
 void mesh_builder_finish(struct mesh_builder *builder);
 
-// Places what is added next: turned about +Y, then moved.
+// Transform of shapes added next: rotated about +Y, then translated.
 void mesh_builder_add_node(struct mesh_builder *builder, float x, float y, float z, float turn_rad);
 
-// Computes tangents from the texture coordinates, appends everything collected as one primitive to
-// the scene's newest mesh and starts afresh. False when memory ended now or before.
+// Computes tangents from texture coordinates, appends everything collected as one primitive to the
+// scene's newest mesh and empties the builder. False when memory ran out now or before.
 bool mesh_builder_commit(struct mesh_builder *builder, struct scene *scene, uint32_t material);
 
-// A mesh of its own with one primitive from everything collected. SCENE_NONE when memory ended.
+// A mesh with one primitive from everything collected. SCENE_NONE when memory ran out.
 uint32_t mesh_builder_commit_mesh(struct mesh_builder *builder, struct scene *scene,
                                   const char *name, uint32_t material);
 
@@ -37,11 +37,11 @@ uint32_t mesh_builder_commit_mesh(struct mesh_builder *builder, struct scene *sc
 uint32_t mesh_builder_add_vertex(struct mesh_builder *builder, const float position[3],
                                  const float normal[3], float u, float v);
 
-// Leaves out triangles of which two corners coincide, as at the poles of a sphere.
+// Skips triangles with two equal corners, as at the poles of a sphere.
 void mesh_builder_add_triangle(struct mesh_builder *builder, uint32_t a, uint32_t b, uint32_t c);
 
-// A flat quad, corners counter-clockwise seen from its front. Texture coordinates are metres in the
-// plane of the two axes that the quad faces least, so that neighbouring quads match.
+// A flat quad, corners counter-clockwise seen from the front. Texture coordinates are metres in the
+// plane of the two axes most parallel to the quad, so that adjacent quads match.
 void mesh_builder_add_quad(struct mesh_builder *builder, const float corners[4][3]);
 
 enum box_face {
@@ -54,11 +54,11 @@ enum box_face {
     BOX_ALL = 63,
 };
 
-// A box, or those of its faces (enum box_face) that can be seen.
+// A box, or only its visible faces (enum box_face).
 void mesh_builder_add_box(struct mesh_builder *builder, const float low[3], const float high[3],
                           unsigned faces);
 
-// A box whose twelve edges are cut off at 45 degrees, `bevel_m` wide.
+// A box with its twelve edges bevelled at 45 degrees, `bevel_m` wide.
 void mesh_builder_add_beveled_box(struct mesh_builder *builder, const float low[3],
                                   const float high[3], float bevel_m);
 
@@ -67,34 +67,34 @@ typedef void (*surface_function)(const void *context, double u, double v, double
 
 struct surface_params {
     surface_function position;
-    surface_function normal; // NULL: from differences of `position`
+    surface_function normal; // NULL: by differences of `position`
     const void *context;
     uint32_t columns, rows; // quads along u and v
-    float texture_size[2];  // metres (or repeats) that u and v run over
-    bool flipped;           // the front is the other side
+    float texture_size[2];  // extent of u and v in metres (or repeats)
+    bool flipped;           // swaps front and back
 };
 
-// A grid of quads over a smooth surface. Poles, where an edge shrinks to a point, are allowed.
+// A grid of quads over a smooth surface. Poles, where an edge collapses to a point, are allowed.
 void mesh_builder_add_surface(struct mesh_builder *builder, const struct surface_params *params);
 
-// A point of an outline: `out` is the distance from the axis or the path, `up` the height.
+// A point of an outline: `out` is the distance from the axis or path, `up` the height.
 struct profile_point {
     float out, up;
-    bool smooth; // the outline bends here without an edge
+    bool smooth; // no hard edge here
 };
 
-// Turns an outline about +Y. The outline runs upwards with its front on the outer side. Segments of
-// no length and those on the axis are left out.
+// Revolves an outline about +Y. The outline runs upwards with its front on the outer side. Skips
+// segments of zero length and those on the axis.
 void mesh_builder_add_lathe(struct mesh_builder *builder, const struct profile_point *profile,
                             uint32_t count, uint32_t segments);
 
-// An upright shaft with `flutes` hollow channels of `depth_m`, from one radius to another.
+// An upright shaft with `flutes` grooves of `depth_m`, tapering from one radius to another.
 void mesh_builder_add_fluted_shaft(struct mesh_builder *builder, const float radius_m[2],
                                    const float height_m[2], uint32_t flutes, float depth_m);
 
-// Carries an outline around the rectangle +-half_x, +-half_z with mitred corners. `out` is away
-// from the rectangle's middle. The outline's front is on its right hand as seen walking along it
-// with `out` to the right and `up` upwards.
+// Sweeps an outline around the rectangle +-half_x, +-half_z with mitred corners. `out` points away
+// from the rectangle's centre. The outline's front is on its right, seen along it with `out` to the
+// right and `up` upwards.
 void mesh_builder_add_loop(struct mesh_builder *builder, const float half_extent[2],
                            const struct profile_point *profile, uint32_t count);
 
@@ -110,16 +110,16 @@ void mesh_builder_add_sphere(struct mesh_builder *builder, const float center[3]
 void mesh_builder_add_rod(struct mesh_builder *builder, const float from[3], const float to[3],
                           float radius_m, uint32_t segments);
 
-// A wall along X with a half-round (or elliptic) opening at its foot, centred on the origin:
+// A wall along X with a semicircular (or elliptic) opening at its foot, centred on the origin:
 // front and back faces and the underside of the arch. y = 0 is the springing line.
 struct arch_params {
     float width_m, thickness_m, top_m;
-    float radius_m[2]; // of the opening: along X and upwards
-    uint32_t segments; // even
+    float radius_m[2]; // of the opening: along X and up
+    uint32_t segments; // an even number
 };
 void mesh_builder_add_arch_wall(struct mesh_builder *builder, const struct arch_params *params);
 
-// A band that follows the arch between two ellipses: both faces, the inner and the outer side.
+// A band along the arch between two ellipses: both faces, the inner and the outer side.
 void mesh_builder_add_arch_band(struct mesh_builder *builder, const float inner_m[2],
                                 const float outer_m[2], float thickness_m, uint32_t segments);
 

@@ -1,4 +1,4 @@
-// The shapes of mesh_builder.h that come from an outline or from an equation.
+// Shapes of mesh_builder.h that are made from an outline or an equation.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 
 #define MAX_ARCH_SEGMENTS 64u
 
-// One straight piece of an outline with the normals (out, up) and lengths at its ends.
+// A straight segment of an outline with the normals (out, up) and lengths at its ends.
 struct outline_piece {
     struct profile_point from, to;
     float normals[2][2];
@@ -25,7 +25,7 @@ static bool piece_normal(const struct profile_point *from, float out_normal[2])
     return true;
 }
 
-// Describes piece `i`; false if it has no length.
+// Describes segment `i`; false if it has no length.
 static bool outline_piece_init(struct outline_piece *piece, const struct profile_point *profile,
                                uint32_t count, uint32_t i, float length_before)
 {
@@ -57,7 +57,7 @@ static void add_lathe_piece(struct mesh_builder *builder, const struct outline_p
     uint32_t first = builder->mesh.vertex_count;
     for (uint32_t i = 0; i <= segments; i++) {
         float turn = (float)i / (float)segments;
-        // The seam closes exactly.
+        // Modulo, so that the seam closes exactly.
         float angle = 2.0f * (float)M_PI * (float)(i % segments) / (float)segments;
         float x = sinf(angle), z = cosf(angle);
         for (int end = 0; end < 2; end++) {
@@ -81,7 +81,7 @@ void mesh_builder_add_lathe(struct mesh_builder *builder, const struct profile_p
     float widest = 0.0f, length = 0.0f;
     for (uint32_t i = 0; i < count; i++)
         widest = fmaxf(widest, profile[i].out);
-    // A whole number of metres around, so that textures close at the seam.
+    // A whole number of metres around, so that textures match at the seam.
     float turn_length = fmaxf(1.0f, roundf(2.0f * (float)M_PI * widest));
     for (uint32_t i = 0; i + 1 < count; i++) {
         struct outline_piece piece;
@@ -123,7 +123,7 @@ void mesh_builder_add_loop(struct mesh_builder *builder, const float half_extent
     }
 }
 
-// One hollow channel of a shaft.
+// One groove of a shaft.
 struct flute {
     double radius[2], height[2], depth;
     double angle_first, angle_span;
@@ -272,7 +272,7 @@ void mesh_builder_add_rod(struct mesh_builder *builder, const float from[3], con
 struct arch {
     float inner[MAX_ARCH_SEGMENTS + 1][2], outer[MAX_ARCH_SEGMENTS + 1][2];
     float inner_radius[2], outer_radius[2];
-    float angles[MAX_ARCH_SEGMENTS + 1]; // from the upright
+    float angles[MAX_ARCH_SEGMENTS + 1]; // from vertical
     uint32_t segments;
     float half_thickness;
 };
@@ -337,7 +337,7 @@ void mesh_builder_add_arch_wall(struct mesh_builder *builder, const struct arch_
         .segments = params->segments,
         .half_thickness = 0.5f * params->thickness_m,
     };
-    // Rays from the middle of the springing line meet the wall's sides, then its top; one ray goes
+    // Rays from the middle of the springing line hit the wall's sides, then its top; one ray passes
     // through each upper corner.
     float half_width = 0.5f * params->width_m, corner = atan2f(half_width, params->top_m);
     int32_t half = (int32_t)params->segments / 2, quarter = half / 2;

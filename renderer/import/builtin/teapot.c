@@ -1,12 +1,12 @@
 // The Utah teapot: Martin Newell's bicubic Bezier patches (University of Utah, 1975). Rim, body,
-// lid and bottom are quarter turns, each row of control points a quarter circle in his
-// approximation, so that a row is a radius and a height; handle and spout are mirrored halves.
-// His axes are x towards the spout, y to the side, z up.
+// lid and bottom are quarter turns whose rows of control points approximate quarter circles, so a
+// row is stored as radius and height; handle and spout are mirrored halves. His axes are x towards
+// the spout, y to the side, z up.
 #include "renderer/import/builtin/builtin_shapes.h"
 
 #include <math.h>
 
-// Newell's approximation of a quarter circle has its inner control points at 0.56 of the radius.
+// Newell's quarter circle has its inner control points at 0.56 of the radius.
 #define QUARTER_TANGENT 0.56
 
 #define QUARTER_PATCHES 6
@@ -93,8 +93,8 @@ static void patch_position(const void *context, double u, double v, double out_p
 static void patch_normal(const void *context, double u, double v, double out_normal[3])
 {
     double values[3][3], normal[3], length;
-    // Where a row of control points shrinks to one point, the derivative along it vanishes; the
-    // normal has a limit there, which a point close by has to good accuracy.
+    // Where a row of control points collapses to one point, the derivative along it vanishes. The
+    // normal has a limit there; a point nearby approximates it well.
     for (int attempt = 0; attempt < 2; attempt++) {
         patch_evaluate(context, u, v, values);
         for (int axis = 0; axis < 3; axis++) {

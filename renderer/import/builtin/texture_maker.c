@@ -8,7 +8,7 @@ static uint8_t to_byte(float value)
     return (uint8_t)(fminf(fmaxf(value, 0.0f), 1.0f) * 255.0f + 0.5f);
 }
 
-// Takes over `rgba`.
+// Takes ownership of `rgba`.
 static uint32_t add_picture(struct scene *scene, uint32_t edge, uint8_t *rgba)
 {
     struct image *image = image_create(edge, edge, rgba);
