@@ -136,7 +136,7 @@ static bool read_all(int file, uint8_t *bytes, size_t size)
 bool asset_read_file(const char *path, uint64_t max_bytes, uint8_t **out_bytes, size_t *out_size,
                      struct asset_stamp *out_stamp, struct error *out_error)
 {
-    // Non-blocking, so that a pipe of that name cannot hold the loader up before the check below.
+    // Non-blocking, so that opening a pipe cannot block before the check below.
     int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) {
         return error_set(out_error, "cannot open '%.200s': %s", path, strerror(errno));

@@ -12,7 +12,7 @@ struct image_batch {
     struct image_request *requests;
     uint32_t count;
     _Atomic uint32_t next;
-    _Atomic uint64_t bytes; // decoded, all pictures
+    _Atomic uint64_t bytes; // decoded bytes of all images
 };
 
 static bool reserve_bytes(struct image_batch *batch, uint32_t width, uint32_t height,
@@ -86,7 +86,7 @@ void image_batch_load(struct image_request *requests, uint32_t count)
     pthread_t threads[IMAGE_BATCH_MAX_THREADS];
     uint32_t thread_count = 0;
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    // This thread works too; helpers that cannot be started leave it more to do.
+    // This thread works, too, so it does not matter if fewer helpers can be started.
     while (thread_count + 1 < count && thread_count + 1 < IMAGE_BATCH_MAX_THREADS &&
            (long)thread_count + 1 < cores &&
            pthread_create(&threads[thread_count], NULL, batch_thread, &batch) == 0) {

@@ -9,7 +9,7 @@ struct asset_entry {
     uint64_t path_hash;
     struct asset_stamp stamp;
     uint32_t index;
-    uint64_t last_use; // counts calls
+    uint64_t last_use; // number of the newest call that used it
     struct image *image;
 };
 

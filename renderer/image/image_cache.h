@@ -1,7 +1,7 @@
-// Process-wide cache of decoded pictures, so that loading a scene again decodes only what changed.
+// Process-wide cache of decoded images: loading a scene again decodes only what has changed.
 //
-// All functions are thread-safe. The cache holds one reference to each picture; a picture in use by
-// a scene costs no memory twice.
+// All functions are thread-safe. The cache holds one reference per image; an image that a scene
+// uses is stored once.
 #ifndef VOXCAST_RENDERER_IMAGE_IMAGE_CACHE_H
 #define VOXCAST_RENDERER_IMAGE_IMAGE_CACHE_H
 
@@ -12,9 +12,9 @@
 #define ASSET_CACHE_MAX_ENTRIES          8192u
 
 struct asset_key {
-    const char *path; // canonical; of the scene file for pictures that lie in it
+    const char *path; // canonical; for embedded images the scene file's
     struct asset_stamp stamp;
-    uint32_t index; // of the picture in its file; 0 for a picture file of its own
+    uint32_t index; // of an embedded image in its file; 0 for an image file
 };
 
 struct asset_cache_statistics {
@@ -24,15 +24,15 @@ struct asset_cache_statistics {
     uint32_t entries;
 };
 
-// The picture under `key` with a reference for the caller, or NULL if the file changed or it is
-// not held. Cost: a walk over the entries.
+// The image under `key`, with a reference for the caller; NULL if it is not cached or the file has
+// changed. Cost: linear in the entries.
 struct image *asset_cache_get(const struct asset_key *key);
 
-// Keeps `image` under `key` with a reference of its own, in place of what the same path and index
-// held before, and drops the least recently used pictures beyond the budget.
+// Stores `image` under `key` with a reference of its own, replaces the entry of the same path and
+// index, and evicts the least recently used images beyond the budget.
 void asset_cache_put(const struct asset_key *key, struct image *image);
 
-// Pictures beyond the new budget are dropped at once; 0 empties the cache.
+// Evicts images beyond the new budget at once; 0 empties the cache.
 void asset_cache_set_budget(uint64_t bytes);
 
 struct asset_cache_statistics asset_cache_get_statistics(void);

@@ -7,11 +7,11 @@
 
 #include "renderer/image/image.h"
 
-// A compressed stream may claim far more data than its picture holds, and stb would follow it:
-// every allocation of the picture being decoded on this thread must stay below this.
+// Maximum size of an allocation for the image that this thread decodes: a compressed stream may
+// claim far more data than its image holds, and stb would allocate it.
 static _Thread_local size_t allocation_limit_bytes;
 
-#ifndef __clang_analyzer__ // its findings in stb are not ours to mend
+#ifndef __clang_analyzer__ // findings in stb are not ours to fix
 static void *limited_realloc(void *old, size_t size)
 {
     return size > allocation_limit_bytes ? NULL : realloc(old, size);
@@ -45,7 +45,7 @@ bool image_decode_size(const uint8_t *bytes, size_t size, uint32_t *out_width, u
     if (size > INT_MAX) {
         return error_set(out_error, "a picture file of %zu bytes; the limit is %d", size, INT_MAX);
     }
-    allocation_limit_bytes = 1 << 20; // headers need little
+    allocation_limit_bytes = 1 << 20; // a header needs little
     bool known = is_webp(bytes, size)
                      ? WebPGetInfo(bytes, size, &width, &height)
                      : stbi_info_from_memory(bytes, (int)size, &width, &height, &channels);
@@ -81,7 +81,8 @@ static uint8_t *decode_webp(const uint8_t *bytes, size_t size, uint32_t width, u
 static uint8_t *decode_stb(const uint8_t *bytes, size_t size, uint32_t width, uint32_t height)
 {
     int got_width = 0, got_height = 0, channels = 0;
-    // 16 bits in 4 channels and a filter byte per row, doubled as stb's buffers grow by doubling.
+    // 16 bits in 4 channels and a filter byte per row; doubled, since stb's buffers grow by
+    // doubling.
     allocation_limit_bytes = 2 * ((size_t)width * height * 8 + height) + (1 << 20);
     uint8_t *rgba = stbi_load_from_memory(bytes, (int)size, &got_width, &got_height, &channels, 4);
     if (rgba && (got_width != (int)width || got_height != (int)height)) {

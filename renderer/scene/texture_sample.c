@@ -9,12 +9,12 @@ static void transform_uv(const struct scene_texture *texture, const float uv[2],
     double v = (double)uv[1] * texture->scale[1];
     double cosine = cos(texture->rotation_rad);
     double sine = sin(texture->rotation_rad);
-    // KHR_texture_transform rotates counter-clockwise as seen with V pointing down.
+    // KHR_texture_transform rotates counter-clockwise with V pointing down.
     out[0] = texture->offset[0] + cosine * u + sine * v;
     out[1] = texture->offset[1] - sine * u + cosine * v;
 }
 
-// The texel at `index` of a row or column of `count` texels; `index` may lie anywhere.
+// Applies the wrap mode to `index` in a row or column of `count` texels.
 static uint32_t wrap_index(int64_t index, uint32_t count, enum scene_wrap wrap)
 {
     int64_t size = count;
