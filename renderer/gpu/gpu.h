@@ -101,7 +101,7 @@ struct gpu_draw_record {
     uint32_t unused[2];
 };
 
-// A vertex as rasterized: attributes 0 (position), 1 (both sets of texture coordinates), 6 (alpha)
+// A vertex as rasterised: attributes 0 (position), 1 (both sets of texture coordinates), 6 (alpha)
 // and 7 (number of the triangles that start with this vertex).
 struct raster_vertex {
     float position[3];

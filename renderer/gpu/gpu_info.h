@@ -9,7 +9,7 @@ struct renderer_info {
     char gl_renderer[128];
     char gl_version[128];
     char egl_device[128];
-    bool software;   // llvmpipe or another CPU rasterizer
+    bool software;   // llvmpipe or another CPU rasteriser
     bool gpu_timers; // timer queries are reliable for compute dispatches
     uint32_t max_texture_edge;
 };

@@ -62,7 +62,7 @@ void gpu_timer_end(struct gpu_timer *timer, uint32_t slot)
         timer->pending[timer->frame][slot] = true;
         return;
     }
-    // CPU drivers queue rasterization: finish it here, so that each pass shows its own time. The
+    // CPU drivers queue rasterisation: finish it here, so that each pass shows its own time. The
     // frame needs the work anyway before it is read back.
     glFinish();
     timer->time_ms[slot] = gpu_clock_ms(timer->gpu) - timer->started_ms[slot];

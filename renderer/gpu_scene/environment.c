@@ -256,7 +256,7 @@ bool gpu_scene_upload_environment(struct gpu_scene *gpu_scene)
     struct environment_block block = {0};
     if (environment->type != SCENE_ENVIRONMENT_NONE)
         project_harmonics(environment, block.irradiance_sh);
-    tabulate_brdf(block.brdf_nodes); // reflections of hits and voxels need it, too
+    tabulate_brdf(block.brdf_nodes); // reflections from voxels and rays need it, too
     block.equirectangular = environment->type == SCENE_ENVIRONMENT_EQUIRECT;
     block.level_count = (float)LEVEL_COUNT;
     bool gradient = environment->type == SCENE_ENVIRONMENT_GRADIENT;

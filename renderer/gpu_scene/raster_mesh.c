@@ -1,4 +1,4 @@
-// Vertices and indices for rasterization: the packed attributes of the visibility pass, with each
+// Vertices and indices for rasterisation: the packed attributes of the visibility pass, with each
 // triangle's provoking (first) vertex its own, since it carries the triangle's number. A flat
 // attribute costs nothing, while gl_PrimitiveID makes a software renderer copy every vertex.
 #include <assert.h>

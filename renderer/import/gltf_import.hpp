@@ -102,7 +102,7 @@ void gltf_import_animations(gltf_import &import);
 
 // import_gltf.cpp
 
-// Adds a warning once per text, with the number of occurrences counted.
+// Adds a warning once per text, however often it occurs.
 void gltf_warn_once(gltf_import &import, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

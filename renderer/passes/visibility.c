@@ -1,4 +1,4 @@
-// Rasterizes ids and depth of opaque and alpha-masked triangles.
+// Rasterises ids and depth of opaque and alpha-masked triangles.
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

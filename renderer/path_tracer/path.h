@@ -4,7 +4,7 @@
 // the BSDF. Light found both ways is weighted by the power heuristic (Veach 1997, "Robust Monte
 // Carlo Methods for Light Transport Simulation"). Russian roulette ends paths of low throughput.
 //
-// Single-sided surfaces match the rasterizer: the camera sees through their backs. All other rays
+// Single-sided surfaces match the rasteriser: the camera sees through their backs. All other rays
 // stop there and return black, since shadow casters block light from both sides in the renderer and
 // a hidden side has no colour. Blended surfaces and thin walls transmit straight through in
 // proportion, from both sides. Bodies (transmission and a thickness) refract at both sides, tint

@@ -10,7 +10,7 @@
 
 // Camera and scene must be unchanged for so long.
 #define REST_MS 150.0
-// Fetches a new image when it has this factor more samples, and at most so often: drawing and
+// Fetches a new image when it has this factor more samples, at most every INTERVAL_MS: drawing and
 // encoding take time from tracing.
 #define SAMPLES_STEP 1.2
 #define INTERVAL_MS  100.0

@@ -1,7 +1,7 @@
 // Surface at a hit: the material model of shaders/lib/geometry.glsl, with textures at their finest
 // level.
 //
-// Front faces match the rasterizer: corners run counter-clockwise, also for mirrored transforms.
+// Front faces match the rasteriser: corners run counter-clockwise, also for mirrored transforms.
 // The camera never sees the back of a single-sided surface; the caller decides what it means to
 // other rays.
 #ifndef VOXCAST_RENDERER_PATH_TRACER_SURFACE_H

@@ -10,7 +10,7 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 #if LAYERS
 layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
-    uint fragment_count;    // rasterized
+    uint fragment_count;    // rasterised
     uint fragment_capacity; // size of the pool
     uint fragment_unused[2];
     uint fragment_words[]; // head of each pixel's list, 0: empty

@@ -19,7 +19,7 @@ void main()
     bool first = voxels.sample_count <= 1.0;
     if (s.shading >= SHADE_UNLIT)
         return;
-    // Four rotations in a square of 2x2 pixels swap places from frame to frame: after four frames
+    // Four rotations in a square of 2x2 pixels swap pixels from frame to frame: after four frames
     // every pixel has used all of them, and the next four rotations follow.
     uint order = (texel.x & 1u) + 2u * (texel.y & 1u);
     float frame_number = voxels.sample_count - 1.0;

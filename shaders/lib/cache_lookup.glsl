@@ -2,7 +2,7 @@
 #include "lib/voxel_cells.glsl"
 
 // The finest level that contains a position with all its neighbours, or the number of levels if
-// none does; `out_room` is the distance to the level's rim in voxels.
+// none does; `out_room` is how far inside it lies, in voxels.
 uint cache_level(vec3 position, out float out_room)
 {
     uint level = 0u;
@@ -19,8 +19,8 @@ uint cache_level(vec3 position, out float out_room)
     return voxels.cell_level_count;
 }
 
-// A surface reads the faces of every axis of which its normal has at least this much, so that
-// nothing jumps where the dominant axis changes.
+// Minimum axis weight (squared normal component): a surface reads the faces of every axis above it,
+// so that nothing jumps where the dominant axis changes.
 const float MIN_WEIGHT = 0.1;
 
 // Adds irradiance / pi / scale and ambient visibility, interpolated trilinearly between the faces

@@ -6,7 +6,7 @@ layout(local_size_x = LINEAR_GROUP) in;
 
 layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
 {
-    uint fragment_count;    // rasterized
+    uint fragment_count;    // rasterised
     uint fragment_capacity; // size of the pool
     uint fragment_unused[2];
     uint fragment_words[];

@@ -16,7 +16,7 @@ struct environment_block {
     float level_count;    // of the texture prefiltered by roughness
     uint unused_1;
     uint unused_2;
-    vec3 zenith; // gradient colours; unused with a texture
+    vec3 zenith; // constant or gradient colours; unused with a texture
     float unused_3;
     vec3 horizon;
     float unused_4;

@@ -34,7 +34,7 @@ layout(std430, binding = BIND_FRAGMENTS) buffer fragment_storage
 {
     // `fragment_words`: head of each pixel's list (0: empty), then fragments: next + 1, visibility
     // id.
-    uint fragment_count;    // rasterized
+    uint fragment_count;    // rasterised
     uint fragment_capacity; // size of the pool
     uint fragment_unused[2];
     uint fragment_words[];

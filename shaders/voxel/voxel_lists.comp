@@ -1,4 +1,4 @@
-// Builds the work lists of later passes. STAGE 0: clamps the free lists' lengths and empties the
+// Builds the work lists of later passes. STAGE 0: repairs the free lists and empties the work
 // lists. STAGE 1: appends each cell to the list of lit cells or of those filtered from the finer
 // level; appends occupied voxels of the mip levels. STAGE 2: turns list lengths into indirect
 // dispatch arguments. STAGE 3: the same for tiles of large triangles.

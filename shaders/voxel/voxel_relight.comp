@@ -67,9 +67,9 @@ void add_surfel(inout surfel_sum s, uint word, material_block m, bool directly, 
     uint alpha = m.flags & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK);
     opacity = alpha != 0u ? clamp(opacity * m.base_color.a, 0.0, 1.0) : 1.0;
     float transmission = m.transmission * (1.0 - m.mean_metallic);
-    // Mean reflectance over the hemisphere: the dielectric layer's plus that of the diffuse base
-    // below it, which loses the mean of Schlick's rise (0.0037 of it, see mean_diffuse_fraction()),
-    // or the metal's; with mean metallic and roughness.
+    // Mean reflectance over the hemisphere: the dielectric layer's plus that of the diffuse base,
+    // less what the layer reflects by Schlick (F0 and 0.0037 of the rise to F90, see
+    // mean_diffuse_fraction()); or the metal's. With mean metallic and roughness.
     bool plain = (m.flags & MATERIAL_IOR_ONE) != 0u;
     vec3 f0 = plain ? vec3(0.0) : min(m.f0 * m.specular_color, 1.0) * m.specular;
     float f90 = plain ? 0.0 : m.specular;
