@@ -23,7 +23,7 @@
 
 #define SHADOW_MAP_EDGE 2048u
 // Distance of the nearest shadow caster of a light, relative to the scene's diagonal, and its
-// maximum in m: something huge and far away must not make nearer casters transparent to light.
+// maximum in m: a huge, distant object must not clip nearer casters.
 #define SHADOW_NEAR_FRACTION 1e-4f
 #define SHADOW_NEAR_MAX_M    1e-2f
 
@@ -56,8 +56,8 @@ struct gpu_scene_instance {
     bool visible;
     bool emits_directly; // all its emission is sampled directly as planar emitters
     bool large_emitter;  // and voxels gather it instead: see area_lights.c
-    float bounds_min[3]; // "world" in renderer/, here and elsewhere, is
-    float bounds_max[3]; // relative to gpu_scene.origin
+    float bounds_min[3]; // world: relative to gpu_scene.origin, as in all of
+    float bounds_max[3]; // gpu_scene/, frame/, gi/, passes/ and shaders/
 };
 
 struct gpu_scene_counts {

@@ -16,7 +16,7 @@
 #define TILE_EDGE 8u
 // Maximum samples per pixel that a tile advances at a time, so that tiles stay level.
 #define MAX_STEP 16u
-// Takes little processor time from other processes, but never gets none.
+// Leaves other processes almost all processor time, but is never starved.
 #define LOWEST_PRIORITY 19
 // Alpha of the images.
 #define OPAQUE 1.0f

@@ -117,8 +117,8 @@ bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
 }
 
 #if VOXEL_COLORS && COLOR_CLASSES > 0
-// Square of the longer side of the voxel's footprint: one sample suffices, whatever the quality of
-// the frame that voxelizes.
+// Widens the voxel's footprint to a square of its longer side: one sample suffices, whatever the
+// quality of the frame that voxelizes.
 void square_footprint(inout texture_point point, UV_VECTOR dx, UV_VECTOR dy)
 {
     float first = sqrt(max(dot(dx.xy, dx.xy), dot(dy.xy, dy.xy)));
