@@ -17,7 +17,13 @@
 #define BRDF_SAMPLES    256u
 #define BRDF_MIN_COSINE 1e-3f
 
-// Radiance from a direction, unrotated and at intensity 1.
+static bool has_image(const struct scene_environment *environment)
+{
+    return environment->type == SCENE_ENVIRONMENT_EQUIRECT && environment->image;
+}
+
+// Radiance about a direction, of an unrotated environment of intensity 1. An image is averaged over
+// the solid angle, so that no small and bright light falls between two samples.
 static void sample_environment(const struct scene_environment *environment, const float d[3],
                                float solid_angle, float out_color[3])
 {
@@ -43,10 +49,43 @@ static void sample_environment(const struct scene_environment *environment, cons
     }
 }
 
-// Projects onto bands 0 to 2 and folds in the clamped cosine over pi (Ramamoorthi and Hanrahan
-// 2001: A0 = pi, A1 = 2 pi / 3, A2 = pi / 4), so that shaders only evaluate a polynomial.
-static void project_harmonics(const struct scene_environment *environment,
-                              vec4 out_vectors[ENVIRONMENT_SH_COEFFICIENTS])
+static void add_harmonics(const float d[3], const float color[3], double solid_angle,
+                          double sums[9][3])
+{
+    const double basis[9] = {
+        0.282095,
+        0.488603 * d[1],
+        0.488603 * d[2],
+        0.488603 * d[0],
+        1.092548 * d[0] * d[1],
+        1.092548 * d[1] * d[2],
+        0.315392 * (3.0 * d[2] * d[2] - 1.0),
+        1.092548 * d[0] * d[2],
+        0.546274 * (d[0] * d[0] - d[1] * d[1]),
+    };
+    for (int i = 0; i < 9; i++)
+        for (int c = 0; c < 3; c++)
+            sums[i][c] += basis[i] * color[c] * solid_angle;
+}
+
+// Every texel of the finest level once, with its own solid angle.
+static void sum_image(const struct environment_level *level, double sums[9][3])
+{
+    for (uint32_t row = 0; row < level->height; row++) {
+        double top = cos(M_PI * row / level->height),
+               bottom = cos(M_PI * (row + 1) / level->height);
+        double angle = M_PI * (row + 0.5) / level->height;
+        for (uint32_t column = 0; column < level->width; column++) {
+            double phi = 2.0 * M_PI * ((column + 0.5) / level->width - 0.5);
+            float d[3] = {(float)(sin(angle) * sin(phi)), (float)cos(angle),
+                          (float)(-sin(angle) * cos(phi))};
+            add_harmonics(d, level->pixels + 3 * ((size_t)row * level->width + column),
+                          2.0 * M_PI / level->width * (top - bottom), sums);
+        }
+    }
+}
+
+static void sum_sky(const struct scene_environment *environment, double sums[9][3])
 {
     const uint32_t rows = SH_SAMPLE_ROWS, columns = 2 * SH_SAMPLE_ROWS;
     for (uint32_t row = 0; row < rows; row++)
@@ -180,8 +219,8 @@ static void tabulate_brdf(vec4 *nodes)
 
 static bool upload_levels(struct gpu_scene *gpu_scene, const struct scene_environment *environment)
 {
-    // A constant or gradient sky needs only a few texels.
-    bool pictured = environment->type == SCENE_ENVIRONMENT_EQUIRECT;
+    // A constant or smooth sky needs no more than a few texels.
+    bool pictured = has_image(environment);
     bool any = environment->type != SCENE_ENVIRONMENT_NONE;
     uint32_t edge = pictured ? LEVEL_EDGE : any ? 16 : 1;
     gpu_texture_destroy(&gpu_scene->environment_levels);
@@ -269,9 +308,8 @@ bool gpu_scene_upload_environment(struct gpu_scene *gpu_scene)
                            GPU_BUFFER_STATIC, sizeof(block)))
         return false;
     gpu_buffer_write(gpu_scene->environment, 0, sizeof(block), &block);
-    // Intensity and rotation are uniforms and need no new images.
-    const struct scene_environment *seen = &gpu_scene->environment_seen;
-    if (gpu_scene->environment_levels && same_pictures(seen, environment))
+    // Intensity and rotation are uniforms: the pictures need not be made again for them.
+    if (gpu_scene->environment_levels && same_pictures(gpu_scene))
         return true;
     if (!upload_levels(gpu_scene, environment) || !upload_background(gpu_scene, environment))
         return false;

@@ -143,7 +143,8 @@ struct gpu_scene {
     bool casters_changed;     // since the shadow maps last handled it
 
     struct gpu_buffer *environment;
-    struct scene_environment environment_seen; // source of the images below
+    struct scene_environment environment_seen; // what the pictures below were made from; its
+    uint64_t environment_serial;               // image may be gone, but not this number of it
     struct gpu_texture *environment_levels;
     struct gpu_texture *environment_background;
 };

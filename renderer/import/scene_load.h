@@ -20,8 +20,13 @@ const char *scene_builtin_name(uint32_t index);
 const char *scene_builtin_description(uint32_t index);
 struct scene *scene_create_builtin(const char *name, struct error *out_error);
 
-// Reads an equirectangular Radiance HDR image into environment->pixels (linear RGB floats) and sets
-// the type. On failure `environment` is unchanged.
+// The same in the environment of an equirectangular image (.hdr or .exr), instead of the scene's
+// own; NULL for the scene's own.
+struct scene *scene_load_in_environment(const char *source, const char *environment,
+                                        struct error *out_error);
+
+// Reads an equirectangular image, Radiance (.hdr) or OpenEXR (.exr), into environment->image and
+// sets the type. On failure `environment` is untouched.
 bool scene_load_environment(const char *path, struct scene_environment *environment,
                             struct error *out_error);
 

@@ -18,22 +18,18 @@
 // Beyond this distance from the origin, squared lengths leave the range of floats.
 #define SCENE_MAX_COORDINATE_M 1e15f
 
-// Limits. Larger files are refused with a message that names the limit.
-#define SCENE_MAX_VERTICES         (64u << 20)
-#define SCENE_MAX_INDICES          (192u << 20)
-#define SCENE_MAX_NODES            200000u
-#define SCENE_MAX_MESHES           100000u
-#define SCENE_MAX_PRIMITIVES       200000u
-#define SCENE_MAX_MATERIALS        16384u
-#define SCENE_MAX_IMAGES           4096u
-#define SCENE_MAX_LIGHTS           8192u
-#define SCENE_MAX_CAMERAS          1024u
-#define SCENE_MAX_ANIMATIONS       1024u
-#define SCENE_MAX_IMAGE_EDGE       16384u
-#define SCENE_MAX_IMAGE_BYTES      (256u << 20)
-#define SCENE_MAX_ALL_IMAGES_BYTES (2048ull << 20)
-#define SCENE_MAX_FILE_BYTES       (1024ull << 20)
-#define SCENE_MAX_WARNINGS         64u
+// Limits. A file beyond them is refused with a message that names the limit.
+#define SCENE_MAX_VERTICES   (64u << 20)
+#define SCENE_MAX_INDICES    (192u << 20)
+#define SCENE_MAX_NODES      200000u
+#define SCENE_MAX_MESHES     100000u
+#define SCENE_MAX_PRIMITIVES 200000u
+#define SCENE_MAX_MATERIALS  16384u
+#define SCENE_MAX_IMAGES     4096u
+#define SCENE_MAX_LIGHTS     8192u
+#define SCENE_MAX_CAMERAS    1024u
+#define SCENE_MAX_ANIMATIONS 1024u
+#define SCENE_MAX_WARNINGS   64u
 
 // So many removed lights keep their slots, so that they can be restored under their ids.
 #define SCENE_KEPT_LIGHTS 256u
@@ -171,9 +167,9 @@ struct scene_environment {
     float horizon_color[3];
     float ground_color[3];
     float rotation_rad; // about +Y
-    uint32_t width;  // equirectangular image: linear RGB floats, row 0 at the top (+Y); direction
-    uint32_t height; // of column u: longitude 2 pi (u - 0.5) from -Z towards +X
-    float *pixels;   // owned; NULL unless type is SCENE_ENVIRONMENT_EQUIRECT
+    // One reference, or NULL. It stays while another type is chosen. Direction of column u:
+    // longitude 2 pi (u - 0.5) from -Z towards +X.
+    struct environment_image *image;
 };
 
 struct scene_animation_channel {

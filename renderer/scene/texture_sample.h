@@ -1,6 +1,6 @@
-// Samples a scene's textures on the CPU.
-#ifndef VOXCAST_RENDERER_IMAGE_TEXTURE_SAMPLE_H
-#define VOXCAST_RENDERER_IMAGE_TEXTURE_SAMPLE_H
+// Looks a scene's textures up on the CPU.
+#ifndef VOXCAST_RENDERER_SCENE_TEXTURE_SAMPLE_H
+#define VOXCAST_RENDERER_SCENE_TEXTURE_SAMPLE_H
 
 #include "renderer/scene/scene.h"
 

@@ -8,10 +8,6 @@
 #include "lib/shadow.glsl"
 #endif
 
-#include "lib/cone.glsl" // unconditional, since files are included once
-#include "shared/area_light_block.h"
-#include "shared/light_block.h"
-
 #if PUNCTUAL_LIGHTS
 layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
 {

@@ -4,7 +4,13 @@
 
 #include "shared/types.h"
 
-// Shape of one dispatch.
+// TEXTURE of debug/finite_check.comp: what is checked.
+#define CHECK_BUFFER        0
+#define CHECK_TEXTURE_2D    1
+#define CHECK_TEXTURE_ARRAY 2
+#define CHECK_TEXTURE_3D    3
+
+// Of one dispatch.
 struct finite_check_shape {
     uint length; // in words or texels
     uint record_words;

@@ -43,7 +43,7 @@
 #define SURFEL_WORDS              18u
 #define SURFEL_NEXT               0u
 #define SURFEL_KEY                1u // surface * 8 + face
-#define SURFEL_MASK               2u // bit x + 2 y + 4 z per half of the voxel that is overlapped
+#define SURFEL_MASK               2u // bit x + 2 y + 4 z for each half of the voxel in use
 #define SURFEL_WEIGHT             3u
 #define SURFEL_NORMAL             4u    // 3 sums of weight * normal * 127
 #define SURFEL_SUB_VOXEL_POSITION 7u    // 3 sums of weight * position in the voxel * 255
@@ -87,8 +87,18 @@
 // Marching a face costs as much as so many look-ups.
 #define CACHE_MARCH_COST 10u
 
-// List 0: lit cells of all levels. List n: voxels of level n that are filtered from the finer
-// level.
+// STAGE of voxel/voxel_lists.comp.
+#define LISTS_RESET          0 // repairs the lengths of the free lists and empties the lists
+#define LISTS_APPEND         1 // enters cells and mip voxels
+#define LISTS_ARGUMENTS      2 // lengths become arguments of indirect dispatches
+#define LISTS_TILE_ARGUMENTS 3 // likewise for the tiles of large triangles
+
+// STAGE of gi/cache_select.comp.
+#define SELECT_FACES     0 // enqueues faces by class of urgency
+#define SELECT_ARGUMENTS 1 // arguments of the passes over them
+
+// List 0 has the cells that are lit, of all levels; list n the voxels of level n that are filtered
+// from the finer level.
 #define LIST_LIT 0
 
 #define SURFACE_MATERIAL_MASK 0x0fffffffu

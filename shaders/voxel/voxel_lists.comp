@@ -1,7 +1,8 @@
-// Builds the work lists of later passes. STAGE 0: repairs the free lists and empties the work
-// lists. STAGE 1: appends each cell to the list of lit cells or of those filtered from the finer
-// level; appends occupied voxels of the mip levels. STAGE 2: turns list lengths into indirect
-// dispatch arguments. STAGE 3: the same for tiles of large triangles.
+// Lists what later passes work on. LISTS_RESET: repairs the free lists' lengths and empties the
+// lists. LISTS_APPEND: enters each cell into the list of those that are lit, or of those that take
+// their light from the finer level; enters the occupied voxels of the mip levels below.
+// LISTS_ARGUMENTS: turns the lists' lengths into arguments of indirect dispatches.
+// LISTS_TILE_ARGUMENTS: likewise for the tiles of large triangles.
 #include "lib/voxel_work.glsl"
 #include "lib/voxel_cells.glsl"
 
@@ -48,9 +49,9 @@ void main()
     counters[COUNTER_CELLS] = min(counters[COUNTER_CELLS], voxels.cell_capacity);
     counters[COUNTER_SURFELS] = min(counters[COUNTER_SURFELS], voxels.surfel_capacity);
 }
-#elif STAGE == 1
-// Cells per invocation. Allocates list entries for all of them at once: otherwise invocations
-// contend for the counter.
+#elif STAGE == LISTS_APPEND
+// An invocation takes so many cells and makes room for those that are lit at once: the counter is
+// what all would wait for otherwise.
 const uint CELL_RUN = 16u;
 
 // List of a cell; VOXEL_NONE for a free cell.

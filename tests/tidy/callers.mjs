@@ -42,6 +42,7 @@ function unusedMacros(files) {
     const tokens = tokensOf(file);
     tokens.forEach((token, index) => {
       if (token.kind === 'word') used.add(token.text);
+      if (token.kind === 'string') definesIn(token.text).forEach((name) => used.add(name));
       if (token.kind !== 'directive' || token.inner.length === 0) return;
       const [first, ...others] = token.inner;
       others.forEach(({ text }) => used.add(text));
@@ -53,6 +54,9 @@ function unusedMacros(files) {
   const isOurs = ({ name }) => !HEADER_GUARD.test(name) && !FOR_LIBRARIES.some((prefix) => name.startsWith(prefix));
   return defined.filter((macro) => isOurs(macro) && !used.has(macro.name) && !pasted.some((part) => part(macro.name)));
 }
+
+/** Defines for shaders stand in strings: "STAGE LISTS_RESET\\n". */
+const definesIn = (string) => string.replaceAll('\\n', ' ').match(/\b[A-Z][A-Z0-9_]+\b/g) ?? [];
 
 /** Names that macros build: for PREFIX_##x all that begin so, for x##_SUFFIX all that end so. */
 function pastedParts(files) {
