@@ -98,7 +98,7 @@ static void add_view(struct checked_list *list, const struct view *view)
         item->low_halves = 1u << 7;
     }
     add_buffer(list, "radiance", RESOURCE_RADIANCE, view->radiance);
-    add_buffer(list, "gathered", RESOURCE_RADIANCE, view->accumulation);
+    add_buffer(list, "accumulation", RESOURCE_ACCUMULATION, view->accumulation);
     if (view->last_params.output == FRAME_OUTPUT_LINEAR)
         add_buffer(list, "output", RESOURCE_OUTPUT, view->output);
     add_buffer(list, "shadow_views", NOT_WRITTEN, view->shadow_views);
@@ -107,7 +107,7 @@ static void add_view(struct checked_list *list, const struct view *view)
 static void add_volume(struct checked_list *list, const struct voxel_volume *volume)
 {
     add_texture(list, "voxel_radiance", RESOURCE_VOXEL_RADIANCE, volume->radiance, TEXTURE_VOLUME);
-    struct checked *faces = add(list, "irradiance_cache", RESOURCE_VOXEL_RADIANCE);
+    struct checked *faces = add(list, "irradiance_cache", RESOURCE_IRRADIANCE);
     faces->buffer = volume->faces;
     faces->record_words = FACE_WORDS + volume->params.cache_cones;
     faces->low_halves = faces->high_halves =
@@ -132,10 +132,8 @@ static bool is_written(const struct view *view, enum resource resource)
     if (resource == NOT_WRITTEN)
         return true;
     for (uint32_t i = 0; i < PASS_COUNT; i++)
-        for (uint32_t j = 0; j < all_passes[i]->use_count && !view->pass_skip_reasons[i]; j++)
-            if (all_passes[i]->uses[j].resource == resource &&
-                (all_passes[i]->uses[j].access & ACCESS_WRITE))
-                return true;
+        if (!view->pass_skip_reasons[i] && (all_passes[i]->writes & (1u << resource)))
+            return true;
     return false;
 }
 

@@ -127,6 +127,11 @@ const char *gpu_get_shader_dir(const struct gpu *gpu)
     return gpu->shader_dir;
 }
 
+void gpu_count_error(struct gpu *gpu)
+{
+    gpu->error_count++;
+}
+
 uint64_t gpu_error_count(const struct gpu *gpu)
 {
     return gpu->error_count;

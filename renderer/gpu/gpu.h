@@ -31,8 +31,11 @@ uint64_t gpu_fault_left(const struct gpu *gpu, enum renderer_fault fault);
 // Queries the driver.
 bool gpu_is_lost(struct gpu *gpu);
 
-// Errors that the debug callback has reported so far.
+// Errors that the debug callback has reported so far, and those that were counted.
 uint64_t gpu_error_count(const struct gpu *gpu);
+
+// Counts a misuse of the GPU that GL does not see as an error; the caller logs it.
+void gpu_count_error(struct gpu *gpu);
 
 // Bytes of all live buffers and textures whose label starts with `prefix`.
 uint64_t gpu_memory_bytes(const struct gpu *gpu, const char *prefix);

@@ -20,6 +20,7 @@ struct gpu_program {
     char path[SHADER_MAX_PATH];
     char defines[MAX_DEFINES];
     bool stale;
+    struct gpu_program_bindings bindings;
     uint32_t file_count;
     char (*files)[SHADER_MAX_PATH];
 };
@@ -91,6 +92,48 @@ static GLuint build_stage(struct gpu *gpu, struct gpu_program *program, GLenum s
     return shader;
 }
 
+// Samplers and images name their units in the shader.
+static void find_units(GLuint name, struct gpu_program_bindings *bindings)
+{
+    GLint count = 0;
+    glGetProgramInterfaceiv(name, GL_UNIFORM, GL_ACTIVE_RESOURCES, &count);
+    for (GLint i = 0; i < count; i++) {
+        static const GLenum properties[] = {GL_TYPE, GL_LOCATION, GL_ARRAY_SIZE};
+        GLint values[3] = {0, -1, 0};
+        glGetProgramResourceiv(name, GL_UNIFORM, (GLuint)i, 3, properties, 3, NULL, values);
+        bool image =
+            values[0] >= GL_IMAGE_1D && values[0] <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
+        for (GLint j = 0; values[1] >= 0 && j < values[2]; j++) {
+            GLint unit = -1;
+            glGetUniformiv(name, values[1] + j, &unit);
+            if (unit >= 0 && unit < 32)
+                *(image ? &bindings->images : &bindings->units) |= 1u << unit;
+        }
+    }
+}
+
+static void find_bindings(GLuint name, struct gpu_program_bindings *bindings)
+{
+    GLint count = 0;
+    *bindings = (struct gpu_program_bindings){0};
+    glGetProgramInterfaceiv(name, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &count);
+    for (GLint i = 0; i < count; i++) {
+        static const GLenum property = GL_BUFFER_BINDING;
+        GLint binding = -1;
+        glGetProgramResourceiv(name, GL_SHADER_STORAGE_BLOCK, (GLuint)i, 1, &property, 1, NULL,
+                               &binding);
+        if (binding >= 0 && binding < 32)
+            bindings->storage |= 1u << binding;
+    }
+    find_units(name, bindings);
+}
+
+void gpu_program_get_bindings(const struct gpu_program *program,
+                              struct gpu_program_bindings *out_bindings)
+{
+    *out_bindings = program->bindings;
+}
+
 // Builds a GL program object; 0 on failure. Replaces the program's list of files in either case.
 static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *out_error)
 {
@@ -126,6 +169,7 @@ static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *
             name = 0;
         } else {
             glObjectLabel(GL_PROGRAM, name, -1, program->path);
+            find_bindings(name, &program->bindings);
         }
     }
     for (uint32_t i = 0; i < count; i++)

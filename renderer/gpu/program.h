@@ -19,6 +19,17 @@ uint32_t gpu_programs_reload_changed(struct gpu *gpu, struct error *out_error);
 // Starts watching the shader folder.
 void gpu_programs_watch(struct gpu *gpu);
 
+// What a program reads or writes, as the driver sees it: code that a permutation leaves out does
+// not count.
+struct gpu_program_bindings {
+    uint32_t storage; // bits of the bindings of storage blocks
+    uint32_t units;   // bits of the texture units
+    uint32_t images;  // bits of the image units
+};
+
+void gpu_program_get_bindings(const struct gpu_program *program,
+                              struct gpu_program_bindings *out_bindings);
+
 // The offset in bytes of a member of a uniform or storage block, such as "frame.near_m" or
 // "lights[0].type", as the driver lays it out. False if the program has none of this name.
 bool gpu_program_find_member(const struct gpu_program *program, const char *name,

@@ -96,16 +96,10 @@ const struct pass debug_view_pass = {
     .name = "debug_view",
     .effects_used = EFFECT_BIT(EFFECT_SINGLE_VIEW_SHADOWS) | EFFECT_BIT(EFFECT_POINT_SHADOWS) |
                     EFFECT_BIT(EFFECT_LIGHT_TILES),
-    .use_count = 9,
-    .uses = {{RESOURCE_IDS, ACCESS_READ},
-             {RESOURCE_DEPTH, ACCESS_READ},
-             {RESOURCE_GBUFFER, ACCESS_READ},
-             {RESOURCE_LIGHT_MASKS, ACCESS_READ},
-             {RESOURCE_FRAGMENTS, ACCESS_READ},
-             {RESOURCE_VOXELS, ACCESS_READ},
-             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
-             {RESOURCE_IRRADIANCE, ACCESS_READ},
-             {RESOURCE_RADIANCE, ACCESS_WRITE}},
+    .reads = RESOURCE(IDS) | RESOURCE(DEPTH) | RESOURCE(GBUFFER) | RESOURCE(LIGHT_MASKS) |
+             RESOURCE(FRAGMENTS) | RESOURCE(VOXELS) | RESOURCE(VOXEL_RADIANCE) |
+             RESOURCE(IRRADIANCE),
+    .writes = RESOURCE(RADIANCE),
     .skip_reason = debug_view_skip_reason,
     .run = debug_view_run,
 };

@@ -37,13 +37,10 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
 const struct pass direct_light_pass = {
     .name = "direct_light",
     .effects_used = DIRECT_LIGHT_EFFECTS,
-    .use_count = 6,
-    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
-             {RESOURCE_DEPTH, ACCESS_READ},
-             {RESOURCE_SHADOW_MAP, ACCESS_READ},
-             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
-             {RESOURCE_LIGHT_MASKS, ACCESS_READ},
-             {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
+    .reads = RESOURCE(GBUFFER) | RESOURCE(DEPTH) | RESOURCE(SHADOW_MAP) | RESOURCE(VOXEL_RADIANCE) |
+             RESOURCE(LIGHT_MASKS) | RESOURCE(RADIANCE) | RESOURCE(ACCUMULATION) |
+             RESOURCE(LIGHTS) | RESOURCE(VOXELS) | RESOURCE(IRRADIANCE) | RESOURCE(ENVIRONMENT),
+    .writes = RESOURCE(RADIANCE),
     .skip_reason = direct_light_skip_reason,
     .run = direct_light_run,
 };

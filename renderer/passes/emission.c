@@ -22,8 +22,8 @@ static bool emission_run(struct frame *frame, const struct pass *pass, struct er
 
 const struct pass emission_pass = {
     .name = "emission",
-    .use_count = 2,
-    .uses = {{RESOURCE_GBUFFER, ACCESS_READ}, {RESOURCE_RADIANCE, ACCESS_WRITE}},
+    .reads = RESOURCE(GBUFFER),
+    .writes = RESOURCE(RADIANCE),
     .skip_reason = emission_skip_reason,
     .run = emission_run,
 };

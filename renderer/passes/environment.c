@@ -25,10 +25,8 @@ const struct pass environment_pass = {
     .name = "environment",
     .effects_used = EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR) |
                     EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE),
-    .use_count = 3,
-    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
-             {RESOURCE_DEPTH, ACCESS_READ},
-             {RESOURCE_RADIANCE, ACCESS_WRITE}},
+    .reads = RESOURCE(GBUFFER) | RESOURCE(DEPTH) | RESOURCE(ENVIRONMENT),
+    .writes = RESOURCE(RADIANCE),
     .skip_reason = environment_skip_reason,
     .run = environment_run,
 };

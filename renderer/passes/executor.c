@@ -3,6 +3,7 @@
 #include "renderer/gi/volume.h"
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/timer.h"
+#include "renderer/log.h"
 #include "renderer/passes/pass.h"
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/frame/view.h"
@@ -15,26 +16,36 @@ const struct pass *const all_passes[PASS_COUNT] = {
     &debug_view_pass,       &exposure_pass,          &tonemap_pass,          &readback_pass,
 };
 
-static const char *const resource_names[RESOURCE_COUNT] = {
-    "ids",        "depth",       "gbuffer",  "shadow_map", "voxels",   "voxel_radiance",
-    "irradiance", "light_masks", "radiance", "fragments",  "exposure", "output",
-};
-
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error)
 {
     uint32_t written = 0;
+    for (uint32_t i = 0; i < RESOURCE_COUNT; i++)
+        if (resource_rows[i].scope == SCOPE_SCENE || resource_rows[i].history)
+            written |= 1u << i;
     for (uint32_t i = 0; i < count; i++) {
-        for (uint32_t j = 0; j < passes[i]->use_count; j++) {
-            const struct resource_use *use = &passes[i]->uses[j];
-            if ((use->access & ACCESS_READ) && !(written & (1u << use->resource)))
-                return error_set(out_error, "pass %s reads %s before any pass writes it",
-                                 passes[i]->name, resource_names[use->resource]);
-        }
-        for (uint32_t j = 0; j < passes[i]->use_count; j++)
-            if (passes[i]->uses[j].access & ACCESS_WRITE)
-                written |= 1u << passes[i]->uses[j].resource;
+        uint32_t missing = passes[i]->reads & ~written;
+        if (missing)
+            return error_set(out_error, "pass %s reads %s before any pass writes it",
+                             passes[i]->name, resource_rows[__builtin_ctz(missing)].name);
+        written |= passes[i]->writes;
     }
     return true;
+}
+
+void pass_check_bindings(const struct frame *frame, const struct pass *pass,
+                         const struct gpu_program *program)
+{
+    struct gpu_program_bindings bound;
+    gpu_program_get_bindings(program, &bound);
+    for (uint32_t i = 0; i < RESOURCE_COUNT; i++) {
+        const struct resource_row *row = &resource_rows[i];
+        bool used = (bound.storage & row->storage) || (bound.units & row->units) ||
+                    (bound.images & row->images);
+        if (!used || ((pass->reads | pass->writes) & (1u << i)))
+            continue;
+        log_write(LOG_ERROR, "pass_undeclared pass=%s resource=%s", pass->name, row->name);
+        gpu_count_error(frame->gpu);
+    }
 }
 
 bool passes_execute(struct frame *frame, struct error *out_error)
@@ -75,7 +86,10 @@ const struct gpu_program *pass_program(const struct frame *frame, const struct p
     while (defines[used])
         used++;
     snprintf(defines + used, sizeof(defines) - used, "%s", extra);
-    return gpu_program_get(frame->gpu, shader, defines, out_error);
+    const struct gpu_program *program = gpu_program_get(frame->gpu, shader, defines, out_error);
+    if (program && pass->name)
+        pass_check_bindings(frame, pass, program);
+    return program;
 }
 
 const struct gpu_program *voxel_program(const struct frame *frame, const struct pass *pass,

@@ -30,8 +30,8 @@ static bool exposure_run(struct frame *frame, const struct pass *pass, struct er
 
 const struct pass exposure_pass = {
     .name = "exposure",
-    .use_count = 2,
-    .uses = {{RESOURCE_RADIANCE, ACCESS_READ}, {RESOURCE_EXPOSURE, ACCESS_WRITE}},
+    .reads = RESOURCE(RADIANCE),
+    .writes = RESOURCE(EXPOSURE),
     .skip_reason = exposure_skip_reason,
     .run = exposure_run,
     .shows_reference = true,

@@ -20,10 +20,8 @@ static bool gbuffer_run(struct frame *frame, const struct pass *pass, struct err
 const struct pass gbuffer_pass = {
     .name = "gbuffer",
     .effects_used = SURFACE_EFFECTS,
-    .use_count = 3,
-    .uses = {{RESOURCE_IDS, ACCESS_READ},
-             {RESOURCE_DEPTH, ACCESS_READ},
-             {RESOURCE_GBUFFER, ACCESS_WRITE}},
+    .reads = RESOURCE(IDS) | RESOURCE(DEPTH) | RESOURCE(GEOMETRY) | RESOURCE(MATERIALS),
+    .writes = RESOURCE(GBUFFER),
     .skip_reason = gbuffer_skip_reason,
     .run = gbuffer_run,
 };

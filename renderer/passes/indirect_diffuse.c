@@ -5,6 +5,7 @@
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
+#include "server/accuracy/bench_run.h"
 
 static const char *indirect_diffuse_skip_reason(const struct frame *frame)
 {
@@ -15,16 +16,17 @@ static const char *indirect_diffuse_skip_reason(const struct frame *frame)
     return shown ? NULL : "the debug view shows none";
 }
 
-static bool trace_pixel_rays(const struct frame *frame, struct error *out_error)
+static bool trace_pixel_rays(const struct frame *frame, const struct pass *pass,
+                             struct error *out_error)
 {
-    const struct gpu_program *program = hit_program(frame, "gi/ray_diffuse.comp", out_error);
+    const struct gpu_program *program = hit_program(frame, pass, "gi/ray_diffuse.comp", out_error);
     if (!program)
         return false;
     uint32_t pixels = frame_gather_step(frame) * GROUP_EDGE;
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
                  (frame->height + pixels - 1) / pixels, 1);
     gpu_barrier(frame->gpu);
-    return filter_accumulation(frame, false, out_error);
+    return filter_accumulation(frame, pass, false, out_error);
 }
 
 static bool trace_pixel_cones(const struct frame *frame, const struct pass *pass, const char *extra,
@@ -50,7 +52,7 @@ static bool indirect_diffuse_run(struct frame *frame, const struct pass *pass,
     snprintf(extra, sizeof(extra), "CACHED %d\nGATHER_STEP %u\nFILTERED %d\nALONE %d\n", cached,
              frame_gather_step(frame), rays, alone);
     if (!cached && frame->accumulate &&
-        !(rays ? trace_pixel_rays(frame, out_error)
+        !(rays ? trace_pixel_rays(frame, pass, out_error)
                : trace_pixel_cones(frame, pass, extra, out_error)))
         return false;
     if (frame->accumulate_only)
@@ -71,12 +73,9 @@ const struct pass indirect_diffuse_pass = {
                     EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) |
                     EFFECT_BIT(EFFECT_INDIRECT_SPECULAR),
     .runs_while_accumulating = true,
-    .use_count = 5,
-    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
-             {RESOURCE_DEPTH, ACCESS_READ},
-             {RESOURCE_VOXELS, ACCESS_READ},
-             {RESOURCE_IRRADIANCE, ACCESS_READ},
-             {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
+    .reads = HIT_READS | RESOURCE(GBUFFER) | RESOURCE(DEPTH) | RESOURCE(VOXELS) |
+             RESOURCE(IRRADIANCE) | RESOURCE(RADIANCE) | RESOURCE(ENVIRONMENT),
+    .writes = RESOURCE(RADIANCE) | RESOURCE(ACCUMULATION),
     .skip_reason = indirect_diffuse_skip_reason,
     .run = indirect_diffuse_run,
 };

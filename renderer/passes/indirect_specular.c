@@ -6,6 +6,7 @@
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
+#include "server/accuracy/bench_run.h"
 
 static const char *indirect_specular_skip_reason(const struct frame *frame)
 {
@@ -30,14 +31,15 @@ static bool list_tiles(const struct frame *frame, const struct pass *pass, struc
     return true;
 }
 
-static bool trace_pixel_rays(const struct frame *frame, struct error *out_error)
+static bool trace_pixel_rays(const struct frame *frame, const struct pass *pass,
+                             struct error *out_error)
 {
-    const struct gpu_program *program = hit_program(frame, "gi/ray_specular.comp", out_error);
+    const struct gpu_program *program = hit_program(frame, pass, "gi/ray_specular.comp", out_error);
     if (!program)
         return false;
     gpu_dispatch_indirect(frame->gpu, program, frame->view->glossy_tiles, 0);
     gpu_barrier(frame->gpu);
-    return filter_accumulation(frame, true, out_error);
+    return filter_accumulation(frame, pass, true, out_error);
 }
 
 static bool add_specular_lobe(const struct frame *frame, const struct pass *pass,
@@ -62,13 +64,13 @@ static bool indirect_specular_run(struct frame *frame, const struct pass *pass,
                                   struct error *out_error)
 {
     struct view *view = frame->view;
-    bool runs_while_accumulating = frame->gather == GATHER_RAYS && frame->accumulate;
+    bool samples_due = frame->gather == GATHER_RAYS && frame->accumulate;
     bool tiles_known =
         frame->accumulate_only && frame->accumulated_samples != 1; // from the first sample on
     gpu_bind_storage(frame->gpu, BIND_TILES, view->glossy_tiles);
-    bool done = (frame->accumulate_only && !runs_while_accumulating) || tiles_known ||
+    bool done = (frame->accumulate_only && !samples_due) || tiles_known ||
                 list_tiles(frame, pass, out_error);
-    done = done && (!runs_while_accumulating || trace_pixel_rays(frame, out_error));
+    done = done && (!samples_due || trace_pixel_rays(frame, pass, out_error));
     done = done && (frame->accumulate_only || add_specular_lobe(frame, pass, out_error));
     gpu_bind_storage(frame->gpu, BIND_TILES, view->transparent_tiles);
     return done;
@@ -78,11 +80,9 @@ const struct pass indirect_specular_pass = {
     .name = "indirect_specular",
     .effects_used = EFFECT_BIT(EFFECT_SPECULAR) | EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT),
     .runs_while_accumulating = true,
-    .use_count = 4,
-    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
-             {RESOURCE_DEPTH, ACCESS_READ},
-             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
-             {RESOURCE_RADIANCE, ACCESS_READ_WRITE}},
+    .reads = HIT_READS | RESOURCE(GBUFFER) | RESOURCE(DEPTH) | RESOURCE(VOXEL_RADIANCE) |
+             RESOURCE(RADIANCE) | RESOURCE(ENVIRONMENT),
+    .writes = RESOURCE(RADIANCE) | RESOURCE(ACCUMULATION) | RESOURCE(TILES),
     .skip_reason = indirect_specular_skip_reason,
     .run = indirect_specular_run,
 };

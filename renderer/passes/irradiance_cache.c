@@ -62,11 +62,9 @@ const struct pass irradiance_cache_pass = {
     .name = "irradiance_cache",
     .effects_used = EFFECT_BIT(EFFECT_ENVIRONMENT_LIGHT) | EFFECT_BIT(EFFECT_CLIP_LEVELS),
     .runs_while_accumulating = true,
-    .use_count = 4,
-    .uses = {{RESOURCE_GBUFFER, ACCESS_READ},
-             {RESOURCE_VOXELS, ACCESS_READ},
-             {RESOURCE_VOXEL_RADIANCE, ACCESS_READ},
-             {RESOURCE_IRRADIANCE, ACCESS_WRITE}},
+    .reads = RESOURCE(GBUFFER) | RESOURCE(VOXELS) | RESOURCE(VOXEL_RADIANCE) | RESOURCE(DEPTH) |
+             RESOURCE(ENVIRONMENT),
+    .writes = RESOURCE(IRRADIANCE),
     .skip_reason = irradiance_cache_skip_reason,
     .run = irradiance_cache_run,
 };

@@ -24,8 +24,8 @@ static bool light_tiles_run(struct frame *frame, const struct pass *pass, struct
 const struct pass light_tiles_pass = {
     .name = "light_tiles",
     .effects_used = EFFECT_BIT(EFFECT_TRANSPARENCY),
-    .use_count = 2,
-    .uses = {{RESOURCE_DEPTH, ACCESS_READ}, {RESOURCE_LIGHT_MASKS, ACCESS_WRITE}},
+    .reads = RESOURCE(DEPTH) | RESOURCE(LIGHTS),
+    .writes = RESOURCE(LIGHT_MASKS),
     .skip_reason = light_tiles_skip_reason,
     .run = light_tiles_run,
 };

@@ -6,31 +6,7 @@
 #include "renderer/error.h"
 #include "renderer/frame/frame.h"
 #include "renderer/gpu/gpu.h"
-
-enum resource {
-    RESOURCE_IDS,
-    RESOURCE_DEPTH,
-    RESOURCE_GBUFFER,
-    RESOURCE_SHADOW_MAP,
-    RESOURCE_VOXELS,         // index, cells, surfels and lists
-    RESOURCE_VOXEL_RADIANCE, // texture that cones march through
-    RESOURCE_IRRADIANCE,     // the irradiance cache
-    RESOURCE_LIGHT_MASKS,
-    RESOURCE_RADIANCE,
-    RESOURCE_FRAGMENTS,
-    RESOURCE_EXPOSURE,
-    RESOURCE_OUTPUT,
-    RESOURCE_COUNT
-};
-
-enum access { ACCESS_READ = 1, ACCESS_WRITE = 2, ACCESS_READ_WRITE = 3 };
-
-#define PASS_MAX_USES 10
-
-struct resource_use {
-    enum resource resource;
-    enum access access;
-};
+#include "renderer/passes/resource.h"
 
 // Whether the image is radiance and goes through exposure and tone curve, rather than shown as is.
 bool frame_shows_light(const struct frame *frame);
@@ -41,8 +17,8 @@ const char *frame_blank_reason(const struct frame *frame);
 struct pass {
     const char *name;
     uint32_t effects_used; // EFFECT_BITs that select the shader permutation
-    uint32_t use_count;
-    struct resource_use uses[PASS_MAX_USES];
+    uint32_t reads;        // bits of resources
+    uint32_t writes;       // likewise
 
     // NULL if the pass must run, else why it can be skipped.
     const char *(*skip_reason)(const struct frame *frame);
@@ -53,6 +29,12 @@ struct pass {
     // Binds and dispatches; allocates nothing. False with a message if a shader fails.
     bool (*run)(struct frame *frame, const struct pass *pass, struct error *out_error);
 };
+
+// What shading a ray's hit reads (hit_program()).
+#define HIT_READS                                                                                  \
+    (RESOURCE(BVH) | RESOURCE(GEOMETRY) | RESOURCE(MATERIALS) | RESOURCE(LIGHTS) |                 \
+     RESOURCE(SHADOW_MAP) | RESOURCE(ENVIRONMENT) | RESOURCE(VOXELS) | RESOURCE(VOXEL_RADIANCE) |  \
+     RESOURCE(IRRADIANCE))
 
 extern const struct pass visibility_pass, gbuffer_pass, shadow_map_pass, voxelize_pass,
     voxel_relight_pass, voxel_filter_pass, irradiance_cache_pass, light_tiles_pass,
@@ -68,6 +50,9 @@ bool passes_execute(struct frame *frame, struct error *out_error);
 
 // Whether every resource is written before it is read, in the order of all_passes. On failure the
 // message names the pass and the resource.
+void pass_check_bindings(const struct frame *frame, const struct pass *pass,
+                         const struct gpu_program *program);
+
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error);
 
 // The shader's permutation for the frame's effects and `extra` defines ("NAME 1
@@ -82,12 +67,13 @@ const struct gpu_program *voxel_program(const struct frame *frame, const struct 
                                         struct error *out_error);
 
 // The same for shaders that trace rays against the triangles and shade the hits.
-const struct gpu_program *hit_program(const struct frame *frame, const char *shader,
-                                      struct error *out_error);
+const struct gpu_program *hit_program(const struct frame *frame, const struct pass *pass,
+                                      const char *shader, struct error *out_error);
 
 // Filters the accumulated samples spatially: irradiance, or the specular lobe. Does nothing in
 // accumulate-only frames.
-bool filter_accumulation(const struct frame *frame, bool specular, struct error *out_error);
+bool filter_accumulation(const struct frame *frame, const struct pass *pass, bool specular,
+                         struct error *out_error);
 
 // Finds which of the sun's cascades to render. Call before the passes run.
 void shadow_map_fit_cascades(struct frame *frame);

@@ -14,16 +14,21 @@ static const struct pass shading_of_hits = {
                     ~EFFECT_BIT(EFFECT_LIGHT_TILES),
 };
 
-const struct gpu_program *hit_program(const struct frame *frame, const char *shader,
-                                      struct error *out_error)
+const struct gpu_program *hit_program(const struct frame *frame, const struct pass *pass,
+                                      const char *shader, struct error *out_error)
 {
     char extra[128];
     snprintf(extra, sizeof(extra), "GATHER_STEP %u\nLIGHT_TILES 0\nSHADOW_TAPS 1u\nLIT_HITS %d\n",
              frame_gather_step(frame), frame->gpu_scene->counts.lights <= FRAME_MAX_RAY_LIGHTS);
-    return voxel_program(frame, &shading_of_hits, shader, extra, out_error);
+    const struct gpu_program *program =
+        voxel_program(frame, &shading_of_hits, shader, extra, out_error);
+    if (program)
+        pass_check_bindings(frame, pass, program);
+    return program;
 }
 
-bool filter_accumulation(const struct frame *frame, bool specular, struct error *out_error)
+bool filter_accumulation(const struct frame *frame, const struct pass *pass, bool specular,
+                         struct error *out_error)
 {
     if (frame->accumulate_only)
         return true;
@@ -34,6 +39,7 @@ bool filter_accumulation(const struct frame *frame, bool specular, struct error 
         gpu_program_get(frame->gpu, "gi/accumulation_filter.comp", extra, out_error);
     if (!program)
         return false;
+    pass_check_bindings(frame, pass, program);
     gpu_dispatch(frame->gpu, program, (frame->width + pixels - 1) / pixels,
                  (frame->height + pixels - 1) / pixels, 1);
     gpu_barrier(frame->gpu);

@@ -34,8 +34,8 @@ const struct pass ray_shadows_pass = {
     .effects_used =
         (DIRECT_LIGHT_EFFECTS & ~EFFECT_BIT(EFFECT_LIGHT_TILES)) | EFFECT_BIT(EFFECT_ALPHA_MASK),
     .runs_while_accumulating = true,
-    .use_count = 2,
-    .uses = {{RESOURCE_GBUFFER, ACCESS_READ}, {RESOURCE_DEPTH, ACCESS_READ}},
+    .reads = RESOURCE(BVH) | RESOURCE(LIGHTS) | RESOURCE(GBUFFER) | RESOURCE(DEPTH),
+    .writes = RESOURCE(ACCUMULATION),
     .skip_reason = ray_shadows_skip_reason,
     .run = ray_shadows_run,
 };

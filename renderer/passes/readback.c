@@ -23,8 +23,7 @@ static bool readback_run(struct frame *frame, const struct pass *pass, struct er
 const struct pass readback_pass = {
     .name = "readback",
     .runs_while_accumulating = true,
-    .use_count = 2,
-    .uses = {{RESOURCE_OUTPUT, ACCESS_READ}, {RESOURCE_EXPOSURE, ACCESS_READ}},
+    .reads = RESOURCE(OUTPUT) | RESOURCE(EXPOSURE),
     .run = readback_run,
     .shows_reference = true,
 };

@@ -19,8 +19,7 @@ static bool reference_run(struct frame *frame, const struct pass *pass, struct e
 
 const struct pass reference_pass = {
     .name = "reference",
-    .use_count = 1,
-    .uses = {{RESOURCE_RADIANCE, ACCESS_WRITE}},
+    .writes = RESOURCE(RADIANCE),
     .skip_reason = reference_skip_reason,
     .run = reference_run,
     .shows_reference = true,

@@ -175,8 +175,8 @@ static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct 
 const struct pass shadow_map_pass = {
     .name = "shadow_map",
     .effects_used = EFFECT_BIT(EFFECT_TEXTURES),
-    .use_count = 1,
-    .uses = {{RESOURCE_SHADOW_MAP, ACCESS_WRITE}},
+    .reads = RESOURCE(MATERIALS) | RESOURCE(GEOMETRY),
+    .writes = RESOURCE(SHADOW_MAP),
     .skip_reason = shadow_map_skip_reason,
     .run = shadow_map_run,
 };

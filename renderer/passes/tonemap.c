@@ -28,10 +28,8 @@ static bool tonemap_run(struct frame *frame, const struct pass *pass, struct err
 
 const struct pass tonemap_pass = {
     .name = "tonemap",
-    .use_count = 3,
-    .uses = {{RESOURCE_RADIANCE, ACCESS_READ},
-             {RESOURCE_EXPOSURE, ACCESS_READ},
-             {RESOURCE_OUTPUT, ACCESS_WRITE}},
+    .reads = RESOURCE(RADIANCE) | RESOURCE(EXPOSURE),
+    .writes = RESOURCE(OUTPUT),
     .run = tonemap_run,
     .shows_reference = true,
 };

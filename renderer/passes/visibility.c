@@ -38,8 +38,8 @@ static bool visibility_run(struct frame *frame, const struct pass *pass, struct 
 const struct pass visibility_pass = {
     .name = "visibility",
     .effects_used = EFFECT_BIT(EFFECT_TEXTURES),
-    .use_count = 2,
-    .uses = {{RESOURCE_IDS, ACCESS_WRITE}, {RESOURCE_DEPTH, ACCESS_WRITE}},
+    .reads = RESOURCE(MATERIALS) | RESOURCE(GEOMETRY),
+    .writes = RESOURCE(IDS) | RESOURCE(DEPTH),
     .skip_reason = visibility_skip_reason,
     .run = visibility_run,
 };

@@ -33,8 +33,8 @@ const struct pass voxel_filter_pass = {
     .name = "voxel_filter",
     .effects_used = EFFECT_BIT(EFFECT_CLIP_LEVELS),
     .runs_while_accumulating = true,
-    .use_count = 2,
-    .uses = {{RESOURCE_VOXELS, ACCESS_READ}, {RESOURCE_VOXEL_RADIANCE, ACCESS_READ_WRITE}},
+    .reads = RESOURCE(VOXELS) | RESOURCE(VOXEL_RADIANCE),
+    .writes = RESOURCE(VOXEL_RADIANCE) | RESOURCE(IRRADIANCE),
     .skip_reason = voxel_filter_skip_reason,
     .run = voxel_filter_run,
 };

@@ -40,10 +40,8 @@ const struct pass voxel_relight_pass = {
                     EFFECT_BIT(EFFECT_VOXEL_COLORS),
     .runs_while_accumulating = true,
     // Also reads the irradiance cache, as an earlier frame left it.
-    .use_count = 3,
-    .uses = {{RESOURCE_VOXELS, ACCESS_READ},
-             {RESOURCE_SHADOW_MAP, ACCESS_READ},
-             {RESOURCE_VOXEL_RADIANCE, ACCESS_WRITE}},
+    .reads = RESOURCE(VOXELS) | RESOURCE(SHADOW_MAP) | RESOURCE(LIGHTS) | RESOURCE(MATERIALS),
+    .writes = RESOURCE(VOXEL_RADIANCE) | RESOURCE(IRRADIANCE),
     .skip_reason = voxel_relight_skip_reason,
     .run = voxel_relight_run,
 };

@@ -131,8 +131,8 @@ const struct pass voxelize_pass = {
     .name = "voxelize",
     .effects_used = SURFACE_EFFECTS | EFFECT_BIT(EFFECT_VOXEL_COLORS),
     .runs_while_accumulating = true,
-    .use_count = 1,
-    .uses = {{RESOURCE_VOXELS, ACCESS_WRITE}},
+    .reads = RESOURCE(GEOMETRY) | RESOURCE(MATERIALS),
+    .writes = RESOURCE(VOXELS) | RESOURCE(IRRADIANCE) | RESOURCE(VOXEL_RADIANCE),
     .skip_reason = voxelize_skip_reason,
     .run = voxelize_run,
 };

@@ -48,7 +48,7 @@ static bool leave_own_pixels_out(struct stability_run *run, add_function hard, a
     struct picture with = {0}, without = {0};
     bool done = draw_with(&direct, hard, &with) && draw_with(&direct, plain, &without);
     run->frames += direct.frames;
-    for (uint32_t i = 0; done && i < with.width * with.height; i++) {
+    for (uint32_t i = 0; done && with.width > 0 && i < with.width * with.height; i++) {
         uint32_t x = i % with.width, y = i / with.width;
         if (memcmp(with.rgb + 3 * (size_t)i, without.rgb + 3 * (size_t)i, 3 * sizeof(float)) == 0)
             continue;
