@@ -23,9 +23,9 @@ docs/accuracy/figures.json. The machine should have nothing else to do.
 What has been measured by the same program is kept; a run that was stopped goes on.
 
   --scenes A,B     only these: ${SCENES.map(({ name }) => name).join(', ')}
-  --size WxH       of the pictures (default 640x360)
-  --noise X        of the truth: standard error of pixels over the mean (default 0.005)
-  --samples N      a pixel of the truth, in scenes with caustics, whose noise falls too slowly (default 16384)
+  --size WxH       of the images (default 640x360)
+  --noise X        of the reference image: standard error of pixels over the mean (default 0.005)
+  --samples N      a pixel of the reference image, in scenes with caustics, whose noise falls too slowly (default 16384)
   --ladder NAME    quick, full or a file (default full)
   --frames N       of a moving camera for each setting (default 12)
   --out DIR        where measurements are kept (default build/accuracy)

@@ -1,4 +1,4 @@
-// What each setting buys: pairs of rungs that differ in one setting by one step.
+// What each setting buys: pairs of configurations that differ in one setting by one step.
 import '../../web_client/report/error_chart.js';
 
 const { errorOf } = globalThis.errorChart;
@@ -15,7 +15,7 @@ const STEPS = /** @type {Record<string, { title: string, values: (string | null)
   scale: { title: 'resolution over that shown', values: ['0.5', null, '2'], isDefault: '1' },
 });
 
-/** All that a rung is, as text by key. */
+/** All that a configuration is, as text by key. */
 function factsOf({ method, settings }) {
   const { gi_method: _method, ...set } = settings.set;
   return { method, preset: settings.preset, ...(settings.scale === 1 ? {} : { scale: String(settings.scale) }), ...set };
@@ -38,8 +38,8 @@ function changesOf(before, after) {
 }
 
 /**
- * @param {any[]} rungs of one run
- * @returns {{ key: string, from: string, to: string, changes: any }[]} one for each pair of rungs
+ * @param {any[]} rungs the configurations of one run
+ * @returns {{ key: string, from: string, to: string, changes: any }[]} one for each pair of configurations
  */
 export function stepsOf(rungs) {
   const byFacts = new Map(rungs.map((rung) => [keyOf(factsOf(rung)), rung]));
@@ -66,7 +66,7 @@ function summary(values) {
   return known.length === 1 ? percent(median) : `${percent(median)} (${percent(known[0])} to ${percent(known.at(-1))})`;
 }
 
-/** A table of all steps, over all runs. @param {any[][]} runs rungs of each @returns {string} Markdown, or "" */
+/** A table of all steps, over all runs. @param {any[][]} runs configurations of each @returns {string} Markdown, or "" */
 export function buysTable(runs) {
   const groups = new Map();
   for (const step of runs.flatMap(stepsOf)) {

@@ -1,8 +1,8 @@
-// Where a picture errs most: windows of the error map with the largest mean.
+// Where an image errs most: windows of the error map with the largest mean.
 import { heatMapColor } from '../../web_client/accuracy/heat_map.js';
 
 const WINDOWS = 3;
-const WINDOWS_ACROSS = 6; // a window is this part of the picture's width and height
+const WINDOWS_ACROSS = 6; // a window is this part of the image's width and height
 const MAX_STEP = 4; // pixels from a window to the next
 
 const stepOf = (size) => Math.max(1, Math.min(MAX_STEP, size >> 2));
@@ -28,7 +28,7 @@ export function errorsOf({ rgb, width, height }) {
   });
 }
 
-/** Sums over all rectangles from the top left corner, one wider and higher than the picture. */
+/** Sums over all rectangles from the top left corner, one wider and higher than the image. */
 function sumTable(errors, width, height) {
   const sums = new Float64Array((width + 1) * (height + 1));
   for (let y = 0; y < height; y++)

@@ -1,5 +1,5 @@
 // docs/accuracy/figures.json: what accuracy runs have measured, small enough to be kept beside the sources, so that
-// tests can judge presets by it. One line a rung, in the order of names: what changes shows in a diff.
+// tests can judge presets by it. One line a configuration, in the order of names: what changes shows in a diff.
 
 const METRICS = ['ldr_flip', 'rel_mse', 'ssim', 'energy_red', 'energy_green', 'energy_blue'];
 const DIGITS = 4;
@@ -54,7 +54,7 @@ function commonTable(runs) {
  */
 export const figuresOf = (runs, machine) => ({ machine, quality: commonTable(runs), scenes: runs.map(sceneFigures) });
 
-/** The file's text: JSON, of which a row of the table and a rung are a line each. */
+/** The file's text: JSON, of which a row of the table and a configuration are a line each. */
 export function figuresText({ machine, quality, scenes }) {
   const line = (value) => JSON.stringify(value);
   const rows = Object.entries(quality).map(([preset, row]) => `    ${line(preset)}: ${line(row)}`);

@@ -12,7 +12,7 @@ import { chartSvg } from './svg.mjs';
 const { FIRST_CHOICE, errorOf, frontOf, pointsOf, settingText, short } = globalThis.errorChart;
 
 const PRESETS = ['none', 'draft', 'interactive', 'high', 'final'];
-const OVERVIEW_WIDTH = 256; // of each of four pictures
+const OVERVIEW_WIDTH = 256; // of each of four images
 const WINDOW_WIDTH = 200;
 
 /** @typedef {{ scene: import('./accuracy_scenes.mjs').Scene, folder: string, results: any }} Run */
@@ -22,13 +22,13 @@ const table = (head, rows) =>
 
 const rungOf = ({ results }, name) => results.rungs.find((rung) => rung.name === name);
 
-/** The rung whose errors are looked into: the best preset, or whatever is there that errs least. */
+/** The configuration whose errors are looked into: the best preset, or whatever is there that errs least. */
 function bestRung(run) {
   const flip = (rung) => rung.converged?.metrics?.ldr_flip ?? Infinity;
   return rungOf(run, 'final') ?? [...run.results.rungs].sort((a, b) => flip(a) - flip(b))[0];
 }
 
-/** A figure; "~" before it where the truth's own error is more than a tenth of its error. */
+/** A figure; "~" before it where the reference image's own error is more than a tenth of its error. */
 function figure(results, part, metric, value) {
   if (typeof value !== 'number') return '–';
   const own = results.noise?.[part]?.[metric]?.reference;
@@ -72,7 +72,7 @@ function rungTables(run) {
   return parts.join('\n\n');
 }
 
-/** What is known of the truth's own error, and by which measures it is too much. */
+/** What is known of the reference image's own error, and by which measures it is too much. */
 function noiseText({ results }) {
   const { reference } = results.setup;
   const total = typeof reference.noise === 'number' ? `${short(100 * reference.noise)} %` : 'not known';
@@ -92,7 +92,7 @@ function noiseText({ results }) {
   return `Noise of the reference: ${total} (standard error of pixels over the mean).${flip} ${verdict}`;
 }
 
-/** Writes the pictures of a scene; returns the Markdown that shows them. */
+/** Writes the images of a scene; returns the Markdown that shows them. */
 function scenePictures(run, folder) {
   const { scene, results } = run;
   const best = bestRung(run);
@@ -108,10 +108,10 @@ function scenePictures(run, folder) {
   const places = windows.map(({ x, y, width, height, error }) => `LDR-FLIP ${short(error)} around (${x + (width >> 1)}, ${y + (height >> 1)})`);
   return [
     `![Error against time of ${scene.title}](accuracy/${scene.name}.svg)`,
-    `![Truth, ${cheap.name}, ${best.name} and its errors](accuracy/${scene.name}.png)`,
-    `Above: the truth and \`${cheap.name}\`; below: \`${best.name}\` and where it errs (LDR-FLIP, black 0 to pale yellow 1).`,
-    `![The largest errors: truth, ${best.name}, error](accuracy/${scene.name}-errors.png)`,
-    `The largest errors of \`${best.name}\` (truth, picture, error), from the worst: ${places.join('; ')}.`,
+    `![Reference image, ${cheap.name}, ${best.name} and its errors](accuracy/${scene.name}.png)`,
+    `Above: the reference image and \`${cheap.name}\`; below: \`${best.name}\` and where it errs (LDR-FLIP, black 0 to pale yellow 1).`,
+    `![The largest errors: reference image, ${best.name}, error](accuracy/${scene.name}-errors.png)`,
+    `The largest errors of \`${best.name}\` (reference image, image, error), from the worst: ${places.join('; ')}.`,
   ].join('\n\n');
 }
 
@@ -147,24 +147,24 @@ function overview(runs) {
 const INTRO = `<!-- Written by ./dev accuracy; the last chapter is kept in accuracy/causes.md. -->
 # Accuracy
 
-How far pictures are from the truth, and what less error costs. The truth is the reference path tracer's picture of
+How far images are from the reference image, and what less error costs. The reference image is the path tracer's, of
 the same scene, camera and size. Each setting is measured in a scene that has just been loaded: the median frame of
-a moving camera, the time until the picture has settled, and the error of the settled picture.
+a moving camera, the time until the image has converged, and the error of the converged image.
 
-**LDR-FLIP** is that of the displayed picture at one fixed exposure, 0 to 1: for scale, a picture uniformly 10 % too
-bright scores about 0.15, one 2 % too bright 0.05. **Energy** is the mean of a channel over the truth's: 1 is right.
-**Indirect** is without light of lamps and emitters that was reflected once. **Front**: no other setting is both
-faster and less wrong; its names are bold. **~** before a figure: the truth's own error, by the same measure, is more
-than a tenth of the error shown.`;
+**LDR-FLIP** is that of the displayed image at one fixed exposure, 0 to 1: for scale, an image uniformly 10 % too
+bright scores about 0.15, one 2 % too bright 0.05. **Energy** is the mean of a channel over the reference image's: 1 is
+right. **Indirect** is without the light of emitters that was reflected once. **Front**: no other setting is both
+faster and less wrong; its names are bold. **~** before a figure: the reference image's own error, by the same measure,
+is more than a tenth of the error shown.`;
 
 const PRESETS_INTRO = `How much more each preset errs than the best setting that is as fast and has settled as soon. A
 test reads these figures from [accuracy/figures.json](accuracy/figures.json) and allows up to
 ${(100 * (MAX_EXCESS - 1)).toFixed(0)} % in the built-in scenes; what is beyond is bold.`;
 
 /**
- * Writes accuracy.md and its pictures.
+ * Writes accuracy.md and its images.
  * @param {{ runs: Run[], missing: import('./accuracy_scenes.mjs').Scene[], machine: string, causes: string, folder: string }} params
- *   `folder`: that of the page; pictures go into its folder "accuracy"
+ *   `folder`: that of the page; images go into its folder "accuracy"
  */
 export function writePage({ runs, missing, machine, causes, folder }) {
   const buys = buysTable(runs.map(({ results }) => results.rungs));
@@ -176,7 +176,7 @@ export function writePage({ runs, missing, machine, causes, folder }) {
   parts.push(
     buys
       ? 'Pairs of settings that differ in one step, over all scenes: the median change, and the least and the most. Less error is better; so is less time.'
-      : 'The ladder that was measured has no settings that differ in one step; the full one has.',
+      : 'The sweep that was measured has no settings that differ in one step; the full one has.',
   );
   if (buys) parts.push(buys);
   parts.push('## Where it is wrong and why', causes.trim());

@@ -8,7 +8,7 @@ export const PRESETS = ['draft', 'interactive', 'high', 'final'];
 /** An error over the least of all that is as fast, up to which a preset counts as on the front. */
 export const MAX_EXCESS = 1.1;
 
-/** As fast is what is as fast both while the camera moves and until its picture has settled. */
+/** As fast is what is as fast both while the camera moves and until its image has converged. */
 const TIMES = ['frame_ms', 'settle_ms'];
 
 const flipOf = (rung) => rung.metrics.ldr_flip;
@@ -18,13 +18,13 @@ const timeOf = (rung, time) => (time === 'settle_ms' && !rung.settled ? Infinity
 
 const hasFigures = (rung) => [flipOf(rung), ...TIMES.map((time) => rung[time])].every(Number.isFinite);
 
-/** The rung that is the preset itself, whatever its name. @param {Rung[]} rungs @returns {Rung | undefined} */
+/** The configuration that is the preset itself, whatever its name. @param {Rung[]} rungs @returns {Rung | undefined} */
 export const rungOfPreset = (rungs, preset) =>
   rungs.find(({ settings }) => settings.preset === preset && settings.scale === 1 && Object.keys(settings.set).length === 0);
 
 /**
- * The point of the front at a preset's time: the rung that errs least of those at most as slow, itself included.
- * @param {Rung[]} rungs of one scene
+ * The point of the front at a preset's time: the configuration that errs least of those at most as slow, itself included.
+ * @param {Rung[]} rungs the configurations of one scene
  * @returns {Rung | undefined} none if the preset has no figures
  */
 export function frontAt(rungs, preset) {

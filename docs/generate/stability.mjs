@@ -76,16 +76,16 @@ function pageOf(/** @type {any} */ results) {
   return `# Stability
 
 Small scenes, made in code, that try to break the numbers. Each case states an invariant and a bound; \`./dev stability\`
-runs them all and writes this page, \`voxcast stability\` runs them or one of them and keeps the pictures, and ctest runs
+runs them all and writes this page, \`voxcast stability\` runs them or one of them and keeps the images, and ctest runs
 a family at a time. After every frame a compute shader looks for infinities and NaN in all floating-point resources: depth,
-G-buffer, radiance, what pixels have gathered, voxel radiance, the irradiance cache, shadow views, lamps, instances,
+G-buffer, radiance, accumulation, voxel radiance, the irradiance cache, shadow views, lights, instances,
 materials, vertices, the environment's harmonics and levels. One of them fails the case, whatever was measured.
 
 Measured by ${results.gl_renderer.replace(/ \(.*/, '')}: ${runs.length} runs, ${count('holds')} within their
 bound, ${count('known')} known to miss it (and held to what stands beside it), ${count('fails')} beyond.
 
 A value of 0 is exact: the same bits. "Of the brightest" is the greatest difference of any channel of any pixel over the
-brightest channel of the expected picture. \`reference\` is the path tracer with equal random numbers in both pictures.
+brightest channel of the expected image. \`reference\` is the path tracer with equal random numbers in both images.
 
 ${tables.join('\n')}`;
 }

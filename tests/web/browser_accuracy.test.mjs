@@ -183,7 +183,7 @@ describe('the tab of accuracy', () => {
     await untilText(/Waits until another measurement has ended/);
     await measured(5, { state: 'done', done: 5 });
     assert.match(await text(), /Measured 5 of 5 settings/);
-    assert.match(await text(), /The truth itself errs by 0\.02, more than a tenth of the least error \(0\.05\)/);
+    assert.match(await text(), /The reference image itself errs by 0\.02, more than a tenth of the least error \(0\.05\)/);
     await calls();
   });
 
@@ -260,7 +260,7 @@ describe('the tab of accuracy', () => {
 
   test('the truth lies right of a line that mouse and keys move', async () => {
     await mode('split').check();
-    const divider = page.getByRole('slider', { name: 'Line between live picture and truth' });
+    const divider = page.getByRole('slider', { name: 'Line between live picture and reference image' });
     const truth = page.locator('#comparison-pictures img').first();
     assert.match(await truth.getAttribute('src'), /accuracy\/m3\/reference\.png$/);
     await page.waitForFunction(() => document.querySelector('#comparison-pictures img').naturalWidth > 0);
@@ -270,7 +270,7 @@ describe('the tab of accuracy', () => {
     await page.mouse.down();
     await page.mouse.move(stage.x + stage.width / 4, stage.y + 220, { steps: 4 });
     await page.mouse.up();
-    assert.equal(await divider.getAttribute('aria-valuetext'), '25 % live, 75 % truth');
+    assert.equal(await divider.getAttribute('aria-valuetext'), '25 % live, 75 % reference');
     assert.match(await truth.evaluate(({ style }) => style.clipPath), /25%\)$/);
     await page.keyboard.press('ArrowRight');
     assert.equal(await divider.getAttribute('aria-valuenow'), '27');

@@ -86,7 +86,7 @@ describe('the tab of accuracy and the daemon', () => {
   test('truth and errors lie over the picture while the camera is the measured one', async () => {
     await page.locator('input[value=split]').check();
     await isLoaded(0);
-    assert.ok(await page.getByRole('slider', { name: 'Line between live picture and truth' }).isVisible());
+    assert.ok(await page.getByRole('slider', { name: 'Line between live picture and reference image' }).isVisible());
     await page.locator('input[value=error]').check();
     await isLoaded(1);
     assert.ok(await page.locator('.heat-legend').isVisible());

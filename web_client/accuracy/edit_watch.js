@@ -26,7 +26,7 @@ export class EditWatch extends EventTarget {
     const { id, revision } = this.measurement;
     if (!id) return '';
     const isMoving = this.document.data?.animations.some((/** @type {any} */ { playing }) => playing);
-    if (isMoving) return 'An animation runs: the truth shows the moment that was measured.';
+    if (isMoving) return 'An animation runs: the reference image shows the moment that was measured.';
     if (this.newest.scene > revision) return 'The scene has been edited since it was measured: the figures are those of before.';
     if (this.newest.settings > revision) return 'The settings have changed since: “live” stands for those of before.';
     return '';

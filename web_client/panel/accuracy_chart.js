@@ -123,7 +123,7 @@ export class AccuracyChart {
     const isCold = this.choice.state === 'cold';
     return element('img', {
       src: this.app.measurement.url(isCold ? rung.pictures.strip : rung.pictures.converged),
-      alt: `${isCold ? 'Truth, first and final picture and error' : 'Final picture'} of ${rung.name}`,
+      alt: `${isCold ? 'Reference image, first and final picture and error' : 'Final picture'} of ${rung.name}`,
       style: `aspect-ratio:${isCold ? 4 * width : width}/${height}`,
     });
   }
@@ -146,5 +146,5 @@ export class AccuracyChart {
 function describeNoise(/** @type {any} */ results, /** @type {any} */ { part, metric }) {
   const noise = results.noise?.[part]?.[metric];
   if (!noise || noise.enough) return '';
-  return `The truth itself errs by ${errorChart.short(noise.reference)}, more than a tenth of the least error (${errorChart.short(noise.smallest)}): ask for less noise to tell the best apart.`;
+  return `The reference image itself errs by ${errorChart.short(noise.reference)}, more than a tenth of the least error (${errorChart.short(noise.smallest)}): ask for less noise to tell the best apart.`;
 }

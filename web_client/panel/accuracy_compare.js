@@ -3,7 +3,7 @@ import { element } from '../ui/element.js';
 
 const MODES = [
   { name: 'none', title: 'Picture alone' },
-  { name: 'split', title: 'Split with the truth' },
+  { name: 'split', title: 'Split with the reference' },
   { name: 'error', title: 'Error map' },
 ];
 
@@ -72,9 +72,9 @@ export class AccuracyCompare {
   #describe(/** @type {boolean} */ hasTruth, /** @type {any} */ shown) {
     if (!hasTruth)
       return this.app.measurement.isRunning
-        ? 'The truth can be laid beside the picture once the first setting has been measured.'
-        : 'Measure the view first: then the truth can be laid beside the picture.';
-    if (this.mode === 'split') return 'Drag the line over the picture, or move it by the arrow keys: live on its left, truth on its right.';
+        ? 'The reference image can be laid beside the picture once the first setting has been measured.'
+        : 'Measure the view first: then the reference image can be laid beside the picture.';
+    if (this.mode === 'split') return 'Drag the line over the picture, or move it by the arrow keys: live on its left, reference image on its right.';
     if (this.mode === 'error') return `Where the final picture of ${shown.name} errs, by LDR-FLIP.`;
     return '';
   }

@@ -17,8 +17,8 @@ export class AccuracyMeasure {
     const gui = makeSection(root, 'Measurement');
     const ladder = gui.add(this.choice, 'ladder', LADDERS).name('Settings');
     ladder.domElement.title = 'Which settings are measured: a few presets, or all that differ in one thing.';
-    const noise = gui.add(this.choice, 'noise', NOISE.least, NOISE.most, NOISE.step).name('Noise of the truth (%)');
-    noise.domElement.title = 'The truth is traced until its pixels err by no more than this. Less takes longer: half the noise, four times the time.';
+    const noise = gui.add(this.choice, 'noise', NOISE.least, NOISE.most, NOISE.step).name('Noise of the reference (%)');
+    noise.domElement.title = 'The reference image is traced until its pixels err by no more than this. Less takes longer: half the noise, four times the time.';
     const seconds = gui.add(this.choice, 'seconds', TIMES).name('At most for');
     seconds.domElement.title = 'Light through glass may take hours to be rid of noise. The chart tells what noise is left.';
     this.begin = element('button', { type: 'button', onclick: () => this.#start() }, 'Measure this view');
@@ -84,7 +84,7 @@ const left = (/** @type {any} */ { seconds_left }) => {
 /** @param {import('../accuracy/measurement.js').Progress | null} progress */
 function describeProgress(progress) {
   if (!progress)
-    return 'Traces the truth of what you see in the background, then draws it by each setting and tells how far that is from the truth, and what it costs.';
+    return 'Traces the reference image of what you see in the background, then draws it by each setting and tells how far that is from the reference image, and what it costs.';
   const count = `${progress.done ?? 0} of ${progress.rung_count ?? '?'} settings`;
   switch (progress.state) {
     case 'queued':
@@ -92,7 +92,7 @@ function describeProgress(progress) {
     case 'reference': {
       const noise = progress.noise ? `noise ${percentText(progress.noise)}` : 'noise not known yet';
       const wanted = progress.noise_wanted ? ` (wanted: ${percentText(progress.noise_wanted)})` : '';
-      return `Traces the truth: ${progress.samples ?? 0} samples a pixel, ${noise}${wanted}.${left(progress)}`;
+      return `Traces the reference image: ${progress.samples ?? 0} samples a pixel, ${noise}${wanted}.${left(progress)}`;
     }
     case 'rungs':
       return `Measured ${count}${progress.rung ? `; now ${progress.rung}` : ''}.${left(progress)}`;
@@ -107,7 +107,7 @@ function describeProgress(progress) {
 
 const STEPS = /** @type {Record<string, string>} */ ({
   queued: 'The measurement waits.',
-  reference: 'The truth is being traced.',
+  reference: 'The reference image is being traced.',
   rungs: 'The settings are being measured.',
   done: 'The measurement is done.',
   cancelled: 'The measurement was cancelled.',

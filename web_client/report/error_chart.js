@@ -141,7 +141,7 @@ globalThis.errorChart = (() => {
     if (height <= bottom && height >= top) {
       shapes.push({ tag: 'line', attributes: { class: 'noise', x1: left, x2: right, y1: height, y2: height } });
       const at = { class: 'limit', x: right, y: height - 5, 'text-anchor': 'end' };
-      shapes.push({ tag: 'text', attributes: at, text: 'noise of the truth' });
+      shapes.push({ tag: 'text', attributes: at, text: 'noise of the reference image' });
     }
     const place = budgetMs > 0 ? x.scale(budgetMs) : NaN;
     if (place >= left && place <= right)

@@ -50,9 +50,9 @@
   function describeOwnError() {
     const noise = globalThis.results.noise[choice.part]?.[choice.metric];
     document.getElementById('noise').textContent = noise
-      ? `By this measure the truth itself errs by ${short(noise.reference)}; the smallest error of a final picture ` +
+      ? `By this measure the reference image itself errs by ${short(noise.reference)}; the smallest error of a final picture ` +
         `is ${short(noise.smallest)}. ${noise.enough ? 'That is little enough.' : 'That is more than a tenth: it needs more samples.'}`
-      : 'The error of the truth itself is not known.';
+      : 'The error of the reference image itself is not known.';
   }
 
   function cell(row, text, kind = 'td') {
@@ -65,7 +65,7 @@
     const table = document.getElementById('table');
     table.replaceChildren();
     const head = table.createTHead().insertRow();
-    for (const text of ['rung', 'frame ms', 'first ms', 'final ms', 'edit ms', 'MiB', ...metrics.map(({ title }) => title)])
+    for (const text of ['configuration', 'frame ms', 'first ms', 'final ms', 'edit ms', 'MiB', ...metrics.map(({ title }) => title)])
       cell(head, text, 'th');
     const body = table.createTBody();
     const front = new Set(frontOf(pointsOf(rungs, choice)).map(({ rung }) => rung));
@@ -90,7 +90,7 @@
       const picture = document.createElement('img');
       picture.loading = 'lazy';
       picture.src = rung.pictures.strip;
-      picture.alt = `Truth, first picture, final picture and error of ${rung.name}`;
+      picture.alt = `Reference image, first picture, final picture and error of ${rung.name}`;
       const passes = document.createElement('p');
       const times = Object.entries(rung.pass_ms ?? {}).sort(([, a], [, b]) => b - a);
       passes.textContent = `Median ms of passes: ${times.map(([name, ms]) => `${name} ${short(ms)}`).join(', ')}.`;
@@ -130,7 +130,7 @@
     const { scene, reference } = setup;
     document.getElementById('setup').textContent =
       `${scene.source}, ${scene.width} x ${scene.height}, on ${setup.gl_renderer}. ` +
-      `The truth is ${reference.source}. ${describeNoise()} ` +
+      `The reference image is ${reference.source}. ${describeNoise()} ` +
       `Displayed by the ${setup.tonemap} curve at exposure ${short(setup.exposure)}.`;
     const legend = document.getElementById('legend');
     for (const method of new Set(rungs.map((rung) => rung.method))) {

@@ -33,7 +33,7 @@ export class Comparison extends EventTarget {
     this.controls = controls;
     /** Of the picture that is live. */
     this.share = 0.5;
-    this.truth = element('img', { alt: 'The truth', draggable: 'false' });
+    this.truth = element('img', { alt: 'The reference image', draggable: 'false' });
     this.error = element('img', { alt: '', draggable: 'false' });
     pictures.append(this.truth, this.error);
     this.divider = this.#makeDivider();
@@ -65,9 +65,9 @@ export class Comparison extends EventTarget {
   #makeDivider() {
     const divider = element(
       'div',
-      { class: 'divider', role: 'slider', tabindex: 0, 'aria-label': 'Line between live picture and truth', 'aria-valuemin': 0, 'aria-valuemax': 100, 'aria-orientation': 'horizontal' },
+      { class: 'divider', role: 'slider', tabindex: 0, 'aria-label': 'Line between live picture and reference image', 'aria-valuemin': 0, 'aria-valuemax': 100, 'aria-orientation': 'horizontal' },
       element('span', { class: 'side live', 'aria-hidden': 'true' }, 'live'),
-      element('span', { class: 'side truth', 'aria-hidden': 'true' }, 'truth'),
+      element('span', { class: 'side truth', 'aria-hidden': 'true' }, 'reference'),
       element('span', { class: 'knob', 'aria-hidden': 'true' }, '‹ ›'),
     );
     divider.addEventListener('pointerdown', (/** @type {PointerEvent} */ event) => {
@@ -107,7 +107,7 @@ export class Comparison extends EventTarget {
     this.truth.style.clipPath = `inset(0 0 0 ${100 * this.share}%)`;
     this.divider.style.left = `${100 * this.share}%`;
     this.divider.setAttribute('aria-valuenow', String(percent));
-    this.divider.setAttribute('aria-valuetext', `${percent} % live, ${100 - percent} % truth`);
+    this.divider.setAttribute('aria-valuetext', `${percent} % live, ${100 - percent} % reference`);
   }
 }
 
@@ -119,5 +119,5 @@ function setSource(/** @type {HTMLImageElement} */ picture, /** @type {string} *
 function makeLegend() {
   const scale = element('span', { class: 'scale', style: `background:${heatMapGradient()}` });
   const ends = element('span', { class: 'ends' }, ...['0', '0.5', '1'].map((text) => element('span', {}, text)));
-  return element('div', { class: 'heat-legend', role: 'img', 'aria-label': 'Scale of the error map: LDR-FLIP from 0, black, by violet, red and orange to 1, pale yellow' }, element('span', {}, 'LDR-FLIP: 0 as the truth, 1 as wrong as can be'), scale, ends);
+  return element('div', { class: 'heat-legend', role: 'img', 'aria-label': 'Scale of the error map: LDR-FLIP from 0, black, by violet, red and orange to 1, pale yellow' }, element('span', {}, 'LDR-FLIP: 0 as the reference image, 1 as wrong as can be'), scale, ends);
 }
