@@ -41,7 +41,7 @@ enum method_flags {
     METHOD_MERGES = 2, // a newer one of the same client, target and fields replaces a waiting one
 };
 
-// Which rungs accuracy.start measures.
+// Which configurations accuracy.start measures.
 enum command_sweep { SWEEP_QUICK, SWEEP_FULL, SWEEP_COUNT };
 
 extern const char *const command_sweep_names[SWEEP_COUNT + 1]; // ended by NULL

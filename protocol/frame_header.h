@@ -9,7 +9,7 @@
 #define FRAME_HEADER_BYTES 104u
 
 enum frame_flags {
-    FRAME_CONVERGED = 1, // no better picture of this state will come unasked
+    FRAME_CONVERGED = 1, // no better image of this state will come unasked
 };
 
 struct frame_header {
@@ -33,7 +33,7 @@ struct frame_header {
     uint32_t send_wait_us;
     uint64_t draw_at_us; // monotonic clock
     uint64_t sent_at_us;
-    uint32_t reference_samples; // per pixel, of a reference's picture; else 0
+    uint32_t reference_samples; // per pixel, of a reference's image; else 0
     float reference_noise;      // standard error of a pixel over the mean luminance; 0: unknown
 };
 

@@ -1,11 +1,11 @@
-// Takes the README's picture of the control panel: the atrium, a built-in scene, at rest.
+// Takes the README's image of the control panel: the atrium, a built-in scene, at rest.
 // Run: node docs/generate/panel.mjs
 import { fileURLToPath } from 'node:url';
 
 import { openBrowser } from '../../tests/web/browser.mjs';
 import { startDaemon, stopDaemon } from '../../tests/web/client.mjs';
 
-// On two cores without a GPU the picture comes to rest within a few minutes.
+// On two cores without a GPU the image comes to rest within a few minutes.
 const LIMIT_MS = 1200000;
 
 const daemon = await startDaemon(['--scene', 'builtin:atrium']);

@@ -1,4 +1,4 @@
-// Pictures of 3 bytes a pixel, as PNG files: enough of the format for what voxcast writes.
+// Images of 3 bytes a pixel, as PNG files: enough of the format for what voxcast writes.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { crc32 as zlibCrc32, deflateSync, inflateSync } from 'node:zlib';
 
@@ -114,7 +114,7 @@ export function writePng(path, picture) {
   writeFileSync(path, Buffer.concat([SIGNATURE, chunk('IHDR', header), chunk('IDAT', data), chunk('IEND', Buffer.alloc(0))]));
 }
 
-/** A part of a picture. @param {Picture} picture @returns {Picture} */
+/** A part of an image. @param {Picture} picture @returns {Picture} */
 export function cropped(picture, { x, y, width, height }) {
   const out = makePicture(width, height);
   for (let row = 0; row < height; row++) {
@@ -145,7 +145,7 @@ export function resized(picture, width) {
   return out;
 }
 
-/** Rows of pictures of one size, with gaps. @param {Picture[][]} rows @returns {Picture} */
+/** Rows of images of one size, with gaps. @param {Picture[][]} rows @returns {Picture} */
 export function tiled(rows, gap = 4) {
   const [{ width, height }] = rows[0];
   const columns = Math.max(...rows.map((row) => row.length));

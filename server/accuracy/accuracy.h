@@ -8,9 +8,9 @@
 
 struct cJSON;
 
-// What all rungs of one run share.
+// What all configurations of one run share.
 struct accuracy {
-    struct shot shot; // its settings and camera are those that rungs start from
+    struct shot shot; // its settings and camera are those that configurations start from
     struct reference_image reference_image;
     bool *self_lit; // pixels near those that show emission or background: left out where indirect
                     // light is judged alone, since their edges outshine it
@@ -20,14 +20,15 @@ struct accuracy {
     uint32_t edits;  // of a light that are measured; 0 for none
 };
 
-// Judges a picture: adds "metrics" to the object and, where the truth's direct light is known,
-// "indirect", those of what is left without `direct`. `flip_map` takes the errors of LDR-FLIP.
+// Judges an image: adds "metrics" to the object and, where the reference image's direct light is
+// known, "indirect", those of what is left without `direct`. `flip_map` takes the errors of
+// LDR-FLIP.
 bool accuracy_judge(const struct accuracy *accuracy, const struct picture *picture,
                     const struct picture *direct, struct cJSON *object, float *flip_map,
                     struct error *out_error);
 
-// Measures one rung and writes its pictures into the folder. The entry of results.json is the
-// caller's; NULL with a message.
+// Measures one configuration and writes its images into the folder. The entry of results.json is
+// the caller's; NULL with a message.
 struct cJSON *accuracy_measure(const struct accuracy *accuracy,
                                const struct configuration *configuration, struct error *out_error);
 
@@ -40,9 +41,9 @@ struct cJSON *accuracy_identity(const char *source, const char *const *sets, uin
 // deletes it.
 struct cJSON *accuracy_quality_table(void);
 
-// All that results depend on, beside the rung: equal text means that they can be kept. Program and
-// shaders count by size and time of change. `reference_path` is NULL for a traced truth, whose own
-// error is there, too. NULL with a message when memory ends.
+// All that results depend on, beside the configuration: equal text means that they can be kept.
+// Program and shaders count by size and time of change. `reference_path` is NULL for a traced
+// truth, whose own error is there, too. NULL with a message when memory ends.
 struct cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_path,
                              const struct cJSON *identity, struct error *out_error);
 
@@ -54,9 +55,9 @@ struct accuracy_run {
     struct accuracy_watch watch;
 };
 
-// Gets the truth, writes it as reference.png, and measures the rungs that are not in the folder
-// yet; writes the results after each. The results are the caller's; NULL with
-// a message, such as that the watch ended the run.
+// Gets the reference image, writes it as reference.png, and measures the configurations that are
+// not in the folder yet; writes the results after each. The results are the caller's; NULL with a
+// message, such as that the watch ended the run.
 struct cJSON *accuracy_run(const struct accuracy_run *run, struct error *out_error);
 
 #endif

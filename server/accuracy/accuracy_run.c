@@ -1,4 +1,4 @@
-// A whole run: the truth, then every rung that is not there yet.
+// A whole run: the reference image, then every configuration that is not there yet.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -65,7 +65,7 @@ static void choose_display(struct accuracy *accuracy)
         .exposure = exposure, .tonemap = settings->tonemap, .gamma = settings->gamma};
 }
 
-// How far the rungs are, and what they took in this run.
+// How far the configurations are, and what they took in this run.
 struct climb {
     const struct accuracy_run *run;
     const cJSON *results;
@@ -102,7 +102,7 @@ static bool write_results(const struct climb *climb, struct error *out_error)
            (!climb->run->with_report || results_write_report(climb->results, folder, out_error));
 }
 
-// Measures a rung and writes everything anew.
+// Measures a configuration and writes everything anew.
 static bool measure_configuration(struct climb *climb, const struct configuration *configuration,
                                   cJSON *results, struct error *out_error)
 {
@@ -118,7 +118,7 @@ static bool measure_configuration(struct climb *climb, const struct configuratio
            (tell(climb) || error_set(out_error, "stopped after rung %s", configuration->name));
 }
 
-// Measures the rungs that are not there yet.
+// Measures the configurations that are not there yet.
 static bool measure_configurations(const struct accuracy_run *run, cJSON *results,
                                    struct error *out_error)
 {

@@ -1,4 +1,4 @@
-// What results depend on: the scene as it is shown, the program, and the truth.
+// What results depend on: the scene as it is shown, the program, and the reference image.
 #include <assert.h>
 #include <cjson/cJSON.h>
 #include <float.h>
@@ -122,7 +122,7 @@ cJSON *accuracy_quality_table(void)
     return table;
 }
 
-// The truth's own error, by every metric.
+// The reference image's own error, by every metric.
 static cJSON *reference_error(const struct accuracy *accuracy, struct error *out_error)
 {
     const struct picture *pictures = accuracy->reference_image.pictures;
@@ -140,7 +140,7 @@ static cJSON *reference_error(const struct accuracy *accuracy, struct error *out
     return NULL;
 }
 
-// All that results depend on, beside the rung.
+// All that results depend on, beside the configuration.
 cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_path,
                       const cJSON *identity, struct error *out_error)
 {

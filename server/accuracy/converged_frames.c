@@ -1,4 +1,4 @@
-// Frames that are waited for: one, the next of a moving camera, or as many as a picture needs.
+// Frames that are waited for: one, the next of a moving camera, or as many as an image needs.
 #include "server/accuracy/converged_frames.h"
 
 #include <unistd.h>

@@ -17,7 +17,7 @@ bool frames_render_next(struct renderer *renderer, struct view *view,
                         const struct frame_params *params, struct frame_pixels *out_pixels,
                         struct error *out_error);
 
-// Frames of one picture, drawn until it has converged.
+// Frames of one image, drawn until it has converged.
 struct converged_frames {
     struct renderer *renderer;
     struct view *view;

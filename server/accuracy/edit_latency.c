@@ -38,7 +38,7 @@ struct edit_bench {
     struct view *view;
     uint32_t light, material; // one of them is SCENE_NONE
     float exposure;
-    double change, indirect_change; // between the settled pictures
+    double change, indirect_change; // between the settled images
     struct edit_state states[2];
     float *frame;
 };
@@ -119,7 +119,7 @@ static bool draw_linear(struct edit_bench *bench, enum debug_view debug_view, fl
     return true;
 }
 
-// Linear pictures are not exposed, so a displayed one tells the exposure.
+// Linear images are not exposed, so a displayed one tells the exposure.
 static bool find_exposure(struct edit_bench *bench, struct error *out_error)
 {
     struct frame_params params = bench->frame_params;
@@ -134,7 +134,7 @@ static bool find_exposure(struct edit_bench *bench, struct error *out_error)
     return true;
 }
 
-// Settled pictures of both states; the second state is left in place.
+// Settled images of both states; the second state is left in place.
 static bool draw_states(struct edit_bench *bench, struct error *out_error)
 {
     if (!find_exposure(bench, out_error))

@@ -1,5 +1,5 @@
-// How a picture follows an edit of a light: the edit is made and taken back in turn, and each frame
-// is compared with the settled pictures of before and after.
+// How an image follows an edit of a light: the edit is made and taken back in turn, and each frame
+// is compared with the settled images of before and after.
 #ifndef VOXCAST_SERVER_ACCURACY_EDIT_LATENCY_H
 #define VOXCAST_SERVER_ACCURACY_EDIT_LATENCY_H
 
@@ -24,10 +24,10 @@ struct edit_params {
     uint32_t repetitions;     // edits measured
 };
 
-// A change between two pictures is the mean absolute difference of linear radiance, exposed as the
-// first settled picture is, and clipped at 1.
+// A change between two images is the mean absolute difference of linear radiance, exposed as the
+// first settled image is, and clipped at 1.
 enum edit_stage {
-    EDIT_FIRST,    // 1 % of the change is in the picture
+    EDIT_FIRST,    // 1 % of the change is in the image
     EDIT_ARRIVED,  // 95 % of it are there, and stay
     EDIT_INDIRECT, // 95 % of the change of indirect light alone, not clipped, are there, and stay
     EDIT_SETTLED,  // nothing more changes
@@ -38,13 +38,13 @@ extern const char *const edit_stage_names[EDIT_STAGE_COUNT];
 
 struct edit_result {
     uint32_t light, material;                // what was edited; the other is SCENE_NONE
-    double change;                           // between the settled pictures
+    double change;                           // between the settled images
     struct samples ms[EDIT_STAGE_COUNT];     // from the edit on, over the repetitions
     struct samples frames[EDIT_STAGE_COUNT]; // likewise
 };
 
-// Measures; times are those of drawing and reading back linear pictures, one
-// after another. False with a message if nothing shines, or the picture does not settle. The
+// Measures; times are those of drawing and reading back linear images, one
+// after another. False with a message if nothing shines, or the image does not settle. The
 // result is to be finished in any case.
 bool edit_measure(const struct edit_params *params, struct edit_result *out_result,
                   struct error *out_error);

@@ -1,4 +1,5 @@
-// One rung of a ladder: its times, its pictures, and how far these are from the truth.
+// One configuration of a sweep: its times, its images, and how far these are from the reference
+// image.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,14 +19,14 @@
 #define STRIP_PICTURES 4u
 #define STRIP_GAP      4u
 
-// What is gathered about one rung.
+// What is gathered about one configuration.
 struct configuration_work {
     const struct accuracy *accuracy;
     const struct configuration *configuration;
     struct frame_params params;
     struct view *view;
-    struct picture cold, converged, direct; // of the truth's size
-    float *flip_map;                        // of the converged picture
+    struct picture cold, converged, direct; // of the reference image's size
+    float *flip_map;                        // of the converged image
     cJSON *entry;
 };
 
@@ -66,7 +67,7 @@ static void resample(const struct picture *source, struct picture *target)
         }
 }
 
-// Pixels as a picture of the truth's size.
+// Pixels as an image of the reference image's size.
 static bool take_picture(const struct configuration_work *work, const struct frame_pixels *pixels,
                          struct picture *out_picture)
 {
@@ -131,7 +132,7 @@ static bool forget_light(const struct accuracy *accuracy, struct error *out_erro
            renderer_set_scene(accuracy->shot.renderer, accuracy->shot.scene, out_error);
 }
 
-// The first picture of a scene that has just been uploaded, and the one that is final.
+// The first image of a scene that has just been uploaded, and the one that is final.
 static bool draw_pictures(struct configuration_work *work, struct error *out_error)
 {
     struct renderer *renderer = work->accuracy->shot.renderer;
@@ -217,7 +218,7 @@ static void add_metrics(cJSON *object, const char *name, const struct image_metr
         cJSON_AddNumberToObject(json, image_metric_infos[i].name, metrics->values[i]);
 }
 
-// What is left of a picture without its direct light, where nothing shines by itself.
+// What is left of an image without its direct light, where nothing shines by itself.
 static bool take_indirect(const struct accuracy *accuracy, const struct picture *picture,
                           const struct picture *direct, struct picture *out_indirect)
 {
@@ -275,7 +276,7 @@ static bool write_png(struct configuration_work *work, cJSON *pictures, const ch
     return picture_file_write_png(path, width, height, rgb, out_error);
 }
 
-// The converged picture, the heat map, and a strip of truth, cold, converged and heat map.
+// The converged image, the heat map, and a strip of truth, cold, converged and heat map.
 static bool write_pictures(struct configuration_work *work, struct error *out_error)
 {
     const struct picture *reference_image =
@@ -329,7 +330,7 @@ static bool measure(struct configuration_work *work, struct error *out_error)
     work->view = renderer_view_create(accuracy->shot.renderer);
     if (!work->view)
         return error_set(out_error, "out of memory");
-    // Edits go on from the picture that has settled.
+    // Edits go on from the image that has settled.
     bool done = draw_pictures(work, out_error) && draw_direct(work, out_error) &&
                 measure_edits(work, out_error);
     renderer_view_destroy(accuracy->shot.renderer, &work->view);

@@ -1,4 +1,4 @@
-// Picture files, and the camera that sees a whole scene.
+// Image files, and the camera that sees a whole scene.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,7 +84,7 @@ static void append_to_file(void *file, void *data, int size)
 
 static bool write_png(FILE *file, const struct frame_pixels *pixels)
 {
-    // Alpha says nothing: the picture is opaque.
+    // Alpha says nothing: the image is opaque.
     uint8_t *rgb = malloc((size_t)pixels->width * pixels->height * 3);
     if (!rgb)
         return false;

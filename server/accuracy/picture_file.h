@@ -14,7 +14,7 @@ bool picture_file_write(const char *path, const struct frame_pixels *pixels,
 bool picture_file_write_png(const char *path, uint32_t width, uint32_t height, const uint8_t *rgb,
                             struct error *out_error);
 
-// Pixels of FRAME_OUTPUT_LINEAR as a picture of the caller's. False when out of memory.
+// Pixels of FRAME_OUTPUT_LINEAR as an image of the caller's. False when out of memory.
 bool picture_from_pixels(const struct frame_pixels *pixels, struct picture *out_picture);
 
 // Whether a name ends so, such as with ".png", in upper or lower case.

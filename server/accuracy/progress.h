@@ -5,17 +5,17 @@
 #include "server/accuracy/sweep.h"
 
 enum accuracy_stage {
-    ACCURACY_TRACING,   // the truth; about twice a second
+    ACCURACY_TRACING,   // the reference image; about twice a second
     ACCURACY_TRACED,    // or loaded
-    ACCURACY_MEASURING, // rungs: before the first, and after each
+    ACCURACY_MEASURING, // configurations: before the first, and after each
 };
 
 // How far a run has come.
 struct accuracy_progress {
     enum accuracy_stage stage;
-    uint32_t samples;                     // of the truth, a pixel; 0 if it was loaded
-    double noise;                         // of the truth; not finite while it is not known
-    uint32_t done, configuration_count;   // rungs
+    uint32_t samples;                   // of the reference image, a pixel; 0 if it was loaded
+    double noise;                       // of the reference image; not finite while it is not known
+    uint32_t done, configuration_count; // configurations
     const struct configuration *measured; // the newest, in this run; NULL for none
     const struct configuration *next;     // NULL at the end
     double measured_s;                    // what `measured` took

@@ -1,4 +1,5 @@
-// The picture that rungs are compared with: from a file, or traced and kept for the next run.
+// The image that configurations are compared with: from a file, or traced and kept for the next
+// run.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +18,7 @@
 #define LIGHT_LAYERS (REFERENCE_LAYER(REFERENCE_EMISSION) | REFERENCE_LAYER(REFERENCE_DIRECT))
 #define MAX_SAMPLES  (1u << 20)
 
-// What has been traced, as reference.json has it: equal text means an equal picture.
+// What has been traced, as reference.json has it: equal text means an equal image.
 static char *describe(const struct reference_image_params *params)
 {
     cJSON *json = cJSON_CreateObject();
@@ -56,7 +57,7 @@ static void name_file(const struct reference_image_params *params, const char *n
     snprintf(out_path, PATH_SIZE, "%s/%s", params->folder, name);
 }
 
-// The pictures that an earlier run has kept, if they are the same.
+// The images that an earlier run has kept, if they are the same.
 static bool load_kept(const struct reference_image_params *params, const char *description,
                       struct reference_image *out_reference)
 {
@@ -132,7 +133,7 @@ static void get_progress(const struct halves *halves, uint32_t *out_samples, dou
     *out_noise = 0.5 * hypot(progress[0].noise, progress[1].noise);
 }
 
-// What is known while the truth is being traced.
+// What is known while the reference image is being traced.
 struct trace_state {
     const struct reference_image_params *params;
     const struct halves *halves;
@@ -281,7 +282,7 @@ static bool load_given(const struct reference_image_params *params,
                          &reference_image->pictures[REFERENCE_IMAGE_DIRECT], out_error));
 }
 
-// As trace_reference(), but a run that has kept its pictures is not repeated.
+// As trace_reference(), but a run that has kept its images is not repeated.
 static bool find_or_trace(const struct reference_image_params *params,
                           struct reference_image *reference_image, struct error *out_error)
 {

@@ -6,7 +6,7 @@
 #include "server/accuracy/progress.h"
 #include "server/accuracy/shot.h"
 
-// What pictures are compared with. Those but the first have no pixels if they are not known.
+// What images are compared with. Those but the first have no pixels if they are not known.
 enum reference_picture {
     REFERENCE_IMAGE_ALL,
     REFERENCE_IMAGE_DIRECT, // emission, background, and light of lights and emitters reflected once
@@ -28,14 +28,14 @@ struct reference_image_params {
     uint32_t samples;               // a pixel, if until_noise is 0
     double until_noise;             // trace until the noise is no more than this
     double max_s;                   // or for so long; 0: however long that takes
-    const char *folder;             // where a traced picture is kept, and found again, or NULL
+    const char *folder;             // where a traced image is kept, and found again, or NULL
     const struct cJSON *identity;   // says what scene and view is traced
     bool low_priority;              // gives way to all others
     struct accuracy_watch watch;
 };
 
-// Loads or traces the truth. Tracing takes all processors. False with a message, such as that a
-// file is of another size, or that the watch ended it; then nothing needs finishing.
+// Loads or traces the reference image. Tracing takes all processors. False with a message, such as
+// that a file is of another size, or that the watch ended it; then nothing needs finishing.
 bool reference_image_get(const struct reference_image_params *params,
                          struct reference_image *out_reference, struct error *out_error);
 void reference_image_finish(struct reference_image *reference_image);

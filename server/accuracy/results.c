@@ -53,7 +53,7 @@ static bool same_text(const cJSON *a, const cJSON *b)
     return same;
 }
 
-// Time of a frame and error of the final picture; false where one of them has no value.
+// Time of a frame and error of the final image; false where one of them has no value.
 static bool get_point(const cJSON *entry, enum image_metric metric, double *out_ms,
                       double *out_error)
 {
@@ -67,7 +67,7 @@ static bool get_point(const cJSON *entry, enum image_metric metric, double *out_
     return true;
 }
 
-// The smallest error of a final picture; infinite without any.
+// The smallest error of a final image; infinite without any.
 static double smallest_error(const cJSON *configurations, const char *part,
                              enum image_metric metric)
 {
@@ -83,8 +83,8 @@ static double smallest_error(const cJSON *configurations, const char *part,
     return smallest;
 }
 
-// Says for each metric whether the truth is so much better than the best rung that errors are not
-// its own.
+// Says for each metric whether the reference image is so much better than the best configuration
+// that errors are not its own.
 static void judge_noise(cJSON *results)
 {
     const cJSON *own = get(get(get(results, "setup"), "reference"), "error");

@@ -1,4 +1,4 @@
-// Ladders of settings: those with a name, and those in files.
+// Sweeps of settings: those with a name, and those in files.
 #include <cjson/cJSON.h>
 #include <ctype.h>
 #include <errno.h>

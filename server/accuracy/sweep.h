@@ -30,7 +30,7 @@ struct sweep {
 
 // "quick" (the presets), "full" (methods, voxels, gather modes, cones, steps, bounces, levels and
 // scales, in turn), or a file: a JSON array of {"name", "preset", "scale", "set": {"KEY": VALUE}},
-// all but the name optional. False with a message that names rung, key and range.
+// all but the name optional. False with a message that names configuration, key and range.
 bool sweep_load(const char *name, struct sweep *out_sweep, struct error *out_error);
 
 // Applies quality and sets; size and scale are the caller's.

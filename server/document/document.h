@@ -50,7 +50,7 @@ void document_get(const struct document *document, const struct parameter *param
                   struct parameter_value *out_value);
 
 // Sets all values, which are of one group, or none: refuses with out_error what the document as it
-// stands does not allow (such as an equirect environment without a picture). Vectors that only
+// stands does not allow (such as an equirect environment without an image). Vectors that only
 // give a direction are made unit length, in `values` too.
 bool document_set(const struct document *document, enum parameter_group group, uint32_t id,
                   struct parameter_value *values, uint32_t value_count,

@@ -50,7 +50,7 @@ char *base64_encode(const uint8_t *bytes, size_t count)
     return text;
 }
 
-// The average of texels spread over pixel (x, y) of a picture of `width` x `height`.
+// The average of texels spread over pixel (x, y) of an image of `width` x `height`.
 static void average(const struct image *image, uint32_t width, uint32_t height, uint32_t x,
                     uint32_t y, uint8_t *out_rgb)
 {

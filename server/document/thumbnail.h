@@ -14,7 +14,7 @@ struct thumbnail {
     char *base64; // owned
 };
 
-// Averages up to 8 x 8 texels for each pixel, so that the cost is bounded for any picture. False
+// Averages up to 8 x 8 texels for each pixel, so that the cost is bounded for any image. False
 // when out of memory.
 bool thumbnail_create(const struct image *image, struct thumbnail *out_thumbnail);
 void thumbnail_finish(struct thumbnail *thumbnail);

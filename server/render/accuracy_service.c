@@ -394,7 +394,7 @@ bool accuracy_service_get_configuration(struct accuracy_service *service, uint32
                                         const char *name, struct frame_params *out_params,
                                         double *out_scale, struct error *out_error)
 {
-    // Ladder and params never change, and sessions go on this thread or after being abandoned.
+    // Sweep and params never change, and sessions go on this thread or after being abandoned.
     pthread_mutex_lock(&service->mutex);
     const struct accuracy_session *session = find(service, client_id);
     pthread_mutex_unlock(&service->mutex);

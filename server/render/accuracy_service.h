@@ -68,11 +68,12 @@ void accuracy_service_cancel(struct accuracy_service *service, uint32_t client_i
 // The same for a client that has gone; removes its files.
 void accuracy_service_forget(struct accuracy_service *service, uint32_t client_id);
 
-// Whether frames of rungs may be drawn: no client waits for one of its own.
+// Whether frames of configurations may be drawn: no client waits for one of its own.
 void accuracy_service_set_idle(struct accuracy_service *service, bool idle);
 
-// How a rung of the client's newest measurement is drawn: `params` takes its quality and settings,
-// those as they were measured. False with a message that lists the rungs there are.
+// How a configuration of the client's newest measurement is drawn: `params` takes its quality and
+// settings, those as they were measured. False with a message that lists the configurations there
+// are.
 bool accuracy_service_get_configuration(struct accuracy_service *service, uint32_t client_id,
                                         const char *name, struct frame_params *out_params,
                                         double *out_scale, struct error *out_error);

@@ -23,7 +23,7 @@ struct accuracy_session {
     uint32_t client_id;
     char source[256];
     uint64_t revision;
-    struct sweep sweep;         // the live rung first
+    struct sweep sweep;         // the live configuration first
     struct frame_params params; // of the measured size
     double until_noise, max_s;
     char folder[4096];
@@ -34,7 +34,7 @@ struct accuracy_session {
     enum accuracy_state state;
     bool abandoned;               // replaced, or its client has gone: nobody may see it any more
     bool has_reference;           // reference.png is there
-    uint32_t configurations_done; // the first so many of the ladder are in results.json
+    uint32_t configurations_done; // the first so many of the sweep are in results.json
     struct accuracy_session *next;
 
     // The measuring thread's.

@@ -8,7 +8,7 @@
 
 #include "renderer/settings.h"
 
-#define QUALITY_REST_US 200000u    // without a change for so long, a picture is still
+#define QUALITY_REST_US 200000u    // without a change for so long, an image is still
 #define QUALITY_NEVER   UINT64_MAX // no moment at which to look again
 
 // What a view's user asks for.
@@ -22,7 +22,7 @@ struct quality_request {
 struct quality_controller {
     uint64_t moved_at_us;
     enum quality last_row;    // of the newest frame
-    bool draft;               // moving pictures are drawn with the draft row
+    bool draft;               // moving images are drawn with the draft row
     uint32_t over_count;      // interactive frames in a row that took too long
     uint32_t under_count;     // draft frames in a row after which interactive ones would fit
     uint32_t draft_count;     // draft frames since the last drop, up to those that are learnt from
@@ -44,7 +44,7 @@ enum quality quality_controller_choose(const struct quality_controller *controll
 uint64_t quality_controller_next_us(const struct quality_controller *controller,
                                     const struct quality_request *request, uint64_t now_us);
 
-// Takes in a frame: its row, and how long it took. Frames of a moving picture count that follow one
+// Takes in a frame: its row, and how long it took. Frames of a moving image count that follow one
 // of the same row: the first of a row resizes what it draws into. Three interactive ones in a row
 // above the target change to draft. Back goes the way when eight draft ones in a row tell, by the
 // ratio that the change showed, that interactive ones would take less than four fifths of the
@@ -53,7 +53,7 @@ void quality_controller_take_frame(struct quality_controller *controller,
                                    const struct quality_request *request, enum quality row,
                                    bool moving, double frame_ms);
 
-// The share of the way to the wanted picture, from that of a frame of `row`: what is drawn with a
+// The share of the way to the wanted image, from that of a frame of `row`: what is drawn with a
 // lower row than the wanted one is never done.
 float quality_convergence(enum quality row, enum quality wanted, float convergence);
 

@@ -131,7 +131,7 @@ static void run_texture_get(struct render_thread *thread, const struct command *
         render_reply_error(thread, command, &error);
 }
 
-// Whether another picture is asked for, not only another quality of it.
+// Whether another image is asked for, not only another quality of it.
 static bool shows_other_things(const struct view_options *a, const struct view_options *b)
 {
     return memcmp(&a->camera, &b->camera, sizeof(a->camera)) != 0 || a->width != b->width ||

@@ -16,10 +16,10 @@
 #include "server/render/render_thread.h"
 #include "server/render/scene_loader.h"
 
-// What a rung puts in place of the shared settings, while view_options.rung names it.
+// What a configuration puts in place of the shared settings, while view_options.rung names it.
 struct configuration_override {
     enum quality quality;
-    double scale; // of the picture's size
+    double scale; // of the image's size
     struct render_settings settings;
 };
 
@@ -86,7 +86,7 @@ struct render_thread {
     bool environment_reload_wanted;
 
     uint32_t next_client;
-    uint64_t refined_at_us; // newest frame that only made a picture better
+    uint64_t refined_at_us; // newest frame that only made an image better
     uint64_t refine_us;     // how long one took
     struct render_client clients[FRAME_STREAM_MAX_CLIENTS];
 };
@@ -104,7 +104,7 @@ cJSON *render_author(const struct render_client *client); // null without a clie
 // render_commands.c
 void render_run_command(struct render_thread *thread, struct command *command);
 
-// Counts an edit that was applied, tells it to all clients and has pictures drawn. Takes over
+// Counts an edit that was applied, tells it to all clients and has images drawn. Takes over
 // `edit`. `client` is NULL for what nobody did.
 void render_publish_edit(struct render_thread *thread, struct render_client *client,
                          const struct command *command, cJSON *edit);
@@ -136,7 +136,7 @@ bool render_renew_views(struct render_thread *thread);
 void render_mark_dirty(struct render_thread *thread, struct render_client *client);
 void render_mark_moving(struct render_thread *thread, struct render_client *client);
 
-// Draws for the client whose turn it is, if any wants a frame. Pictures that only get better wait
+// Draws for the client whose turn it is, if any wants a frame. Images that only get better wait
 // for those that have changed.
 bool render_draw_next(struct render_thread *thread);
 
@@ -160,8 +160,8 @@ void render_run_accuracy_start(struct render_thread *thread, struct render_clien
                                const struct command *command);
 void render_run_accuracy_cancel(struct render_thread *thread, const struct command *command);
 
-// Gets what the rung that a view.configure names puts in place, if it names one. False with an
-// error that lists the rungs there are.
+// Gets what the configuration that a view.configure names puts in place, if it names one. False
+// with an error that lists the configurations there are.
 bool render_find_configuration(struct render_thread *thread, const struct command *command,
                                struct configuration_override *out_configuration,
                                struct rpc_error *out_error);

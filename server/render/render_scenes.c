@@ -202,7 +202,7 @@ static void report_failed_load(struct render_thread *thread, const struct error 
     }
 }
 
-// A picture that a reload can no longer read is taken for broken or half-written: the last good
+// An image that a reload can no longer read is taken for broken or half-written: the last good
 // scene stays until it is whole again.
 static bool lost_a_picture(const struct render_thread *thread, const struct scene *scene,
                            struct error *error)

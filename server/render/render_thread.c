@@ -75,7 +75,7 @@ static void wake(void *user)
     mailbox_wake(thread->params.mailbox);
 }
 
-// Whether a client could be sent a frame if the picture changed.
+// Whether a client could be sent a frame if the image changed.
 static bool any_could_draw(struct render_thread *thread)
 {
     for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {

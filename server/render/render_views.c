@@ -12,7 +12,7 @@
 // How long a reference that has nothing new is left alone.
 #define PENDING_US 30000u
 
-// While one client's picture moves, frames that only make others' better take at most this share.
+// While one client's image moves, frames that only make others' better take at most this share.
 #define REFINE_FRACTION 8u
 
 struct render_client *render_find_client(struct render_thread *thread, uint32_t client_id)
@@ -140,13 +140,13 @@ static bool wants_draw(struct render_thread *thread, uint32_t slot, uint64_t now
            frame_stream_wants_frame(thread->params.stream, slot);
 }
 
-// Whether the client's picture does not show the newest state, rather than being rough only.
+// Whether the client's image does not show the newest state, rather than being rough only.
 static bool is_urgent(const struct render_client *client, uint64_t now)
 {
     return client->dirty_since_us != 0 || quality_controller_is_moving(&client->quality, now);
 }
 
-// From when on frames may be drawn that only make a picture better: at once, if nobody moves.
+// From when on frames may be drawn that only make an image better: at once, if nobody moves.
 static uint64_t refine_from_us(const struct render_thread *thread, uint64_t now)
 {
     for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
@@ -211,7 +211,7 @@ static void fill_header(struct render_thread *thread, struct render_client *clie
     };
 }
 
-// The newest frame shows what has come since, too: nothing of it has changed the picture. True if
+// The newest frame shows what has come since, too: nothing of it has changed the image. True if
 // there was any such thing, which clients hear of by their statistics.
 static bool take_unchanged(struct render_client *client)
 {
@@ -243,7 +243,7 @@ struct render_settings render_resolve_settings(const struct render_thread *threa
     return settings;
 }
 
-// How the picture is shown stays as all others are.
+// How the image is shown stays as all others are.
 static void apply_configuration(const struct configuration_override *configuration,
                                 struct frame_params *params)
 {

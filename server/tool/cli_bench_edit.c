@@ -1,4 +1,4 @@
-// voxcast bench edit: how soon a picture shows that a light was edited, and how soon it has become
+// voxcast bench edit: how soon an image shows that a light was edited, and how soon it has become
 // what the edit makes of it.
 #include <cjson/cJSON.h>
 #include <math.h>

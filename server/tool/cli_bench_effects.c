@@ -1,5 +1,5 @@
 // voxcast bench effects: what leaving out unneeded effects saves. Each scene is measured as planned
-// and with every effect forced; the pictures are the same, time and memory are not.
+// and with every effect forced; the images are the same, time and memory are not.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-// voxcast render: one scene to one picture.
+// voxcast render: one scene to one image.
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
@@ -56,7 +56,7 @@ struct render_options {
     const char *out, *stats;
     struct cli_vector move;
     bool converge_first;
-    uint32_t frames; // 0: until the picture has converged
+    uint32_t frames; // 0: until the image has converged
 };
 
 static bool check_options(const struct cli_parser *parser, struct render_options *options,
@@ -116,7 +116,7 @@ struct render_job {
     bool converged;
 };
 
-// Frames until the picture has converged; measured if `measurement` is there, written if `path` is.
+// Frames until the image has converged; measured if `measurement` is there, written if `path` is.
 static int render_converged(struct render_job *job, struct measurement *measurement,
                             const char *path)
 {

@@ -47,7 +47,7 @@ static bool draw(struct shot *shot, struct view *view, struct error *out_error)
 
 static bool draw_presets(struct shot *shot, struct progress *progress, struct error *out_error)
 {
-    // A client's picture moves at first, then climbs to its preset.
+    // A client's image moves at first, then climbs to its preset.
     const enum quality presets[] = {QUALITY_INTERACTIVE, QUALITY_DRAFT, shot->params.quality};
     const uint32_t count = FRAMES_PER_PRESET * sizeof(presets) / sizeof(presets[0]);
     struct view *view = renderer_view_create(shot->renderer);

@@ -75,7 +75,7 @@ static void add_samples(const struct cli_reference_options *options, struct refe
     }
 }
 
-// The displayed picture, as the settings have it.
+// The displayed image, as the settings have it.
 static bool write_displayed(const char *path, const struct picture *picture,
                             const struct render_settings *settings, struct error *out_error)
 {

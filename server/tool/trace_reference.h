@@ -1,4 +1,4 @@
-// voxcast render --gi reference: pictures by the reference path tracer, without a GPU.
+// voxcast render --gi reference: images by the reference path tracer, without a GPU.
 #ifndef VOXCAST_SERVER_ACCURACY_TRACE_REFERENCE_H
 #define VOXCAST_SERVER_ACCURACY_TRACE_REFERENCE_H
 
@@ -10,7 +10,7 @@ struct cli_reference_options {
     double noise;       // goes on until the estimate is below; 0: no matter
     uint32_t bounces;   // of indirect light; REFERENCE_UNLIMITED if not given
     uint32_t light;     // an enum cli_reference_light
-    uint32_t bounce;    // the picture of one bounce alone, 1 or more; 0: not so
+    uint32_t bounce;    // the image of one bounce alone, 1 or more; 0: not so
     uint32_t estimator; // an enum reference_estimator
     uint32_t seed, threads;
 };

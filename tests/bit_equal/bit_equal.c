@@ -1,9 +1,9 @@
 // Shows that a change alters nothing that is drawn. `bit_equal keep FOLDER [SCENE...]` draws scenes
-// with all presets, methods, debug views and settings and keeps the pictures as floats;
+// with all presets, methods, debug views and settings and keeps the images as floats;
 // `bit_equal compare FOLDER [SCENE...]` of another build draws them again and fails unless every
 // bit is the same. Without scenes: the built-in ones, and the files below $VOXCAST_SCENES.
 //
-// Pictures are 48x27: what is compared is the code that runs, and all of it runs for few pixels,
+// Images are 48x27: what is compared is the code that runs, and all of it runs for few pixels,
 // too.
 #include <dirent.h>
 #include <math.h>
@@ -21,7 +21,7 @@
 #define FLOATS      ((size_t)WIDTH * HEIGHT * 3)
 #define MAX_SOURCES 256u
 #define SOURCE_SIZE 512u
-// Of a path-traced picture.
+// Of a path-traced image.
 #define SAMPLES 2u
 // Of the irradiance cache, in a frame: times that are measured must not decide.
 #define TRACE_BUDGET 20000u
@@ -316,7 +316,7 @@ static void trace_paths(struct session *session)
     snapshot_release(&params.scene);
 }
 
-// Files get fewer pictures: what differs from the built-in scenes is what is read.
+// Files get fewer images: what differs from the built-in scenes is what is read.
 static void draw_few(struct session *session)
 {
     const struct shot shots[] = {

@@ -1,7 +1,7 @@
-// Proves that pictures stay as they were judged good: renders every built-in scene and every debug
-// view small, with fixed exposure, and compares with the kept pictures. At most 0.1 % of pixels may
-// differ by more than 5/255 in any channel. On failure the actual picture and an amplified
-// difference are written to the working folder. `test_golden --update` writes the kept pictures.
+// Proves that images stay as they were judged good: renders every built-in scene and every debug
+// view small, with fixed exposure, and compares with the kept images. At most 0.1 % of pixels may
+// differ by more than 5/255 in any channel. On failure the actual image and an amplified
+// difference are written to the working folder. `test_golden --update` writes the kept images.
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// What the tests of global illumination share: pictures drawn until they have converged, their
+// What the tests of global illumination share: images drawn until they have converged, their
 // means, and a report that prints every measured figure and fails at the end.
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_GI_H
 #define VOXCAST_TESTS_GPU_SUPPORT_GI_H
@@ -28,7 +28,7 @@ void gi_check_ratio(struct gi_report *report, double measured, double expected, 
 // Fails the test if anything was bad or nothing was checked.
 void gi_report_finish(const struct gi_report *report);
 
-// Draws one frame of a scene that is shown; prints why if that fails. The picture is made at need.
+// Draws one frame of a scene that is shown; prints why if that fails. The image is made at need.
 enum render_result gi_draw_once(struct renderer *renderer, struct view *view,
                                 const struct frame_params *params,
                                 struct test_picture *out_picture);
@@ -41,11 +41,11 @@ uint32_t gi_converge(struct renderer *renderer, struct view *view,
                      const struct frame_params *params, struct test_picture *out_picture);
 
 // Shows the scene, draws it in a view of its own until it has converged, and hides it again; tells
-// how long that took if it was not one frame. The picture is of floats for FRAME_OUTPUT_LINEAR, and
+// how long that took if it was not one frame. The image is of floats for FRAME_OUTPUT_LINEAR, and
 // of bytes as floats 0..255 for RGBA8. Fails the test if the scene cannot be drawn.
 struct test_picture gi_draw(struct scene *scene, const struct frame_params *params);
 
-// The same in two steps, so that pictures of one scene share its voxels: a view of a scene that is
+// The same in two steps, so that images of one scene share its voxels: a view of a scene that is
 // shown by gi_show(), until gi_hide().
 struct view *gi_show(struct scene *scene);
 struct test_picture gi_draw_in(struct view *view, const struct frame_params *params);

@@ -22,7 +22,7 @@ struct gi_box_params {
 struct scene *gi_box_scene(const struct gi_box_params *params);
 
 // Looks from the middle of the box at one of its walls, in the order of enum voxel_face, which
-// fills a square picture evenly.
+// fills a square image evenly.
 void gi_box_look_at_wall(float turn_rad, uint32_t wall, struct view_camera *out_camera);
 
 // A passage that bends: a light stands in one arm, the camera in the other, which it cannot light

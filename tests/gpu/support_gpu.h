@@ -1,10 +1,10 @@
-// What the tests that render share: a renderer, small scenes, and pictures as floats.
+// What the tests that render share: a renderer, small scenes, and images as floats.
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_GPU_H
 #define VOXCAST_TESTS_GPU_SUPPORT_GPU_H
 
 #include "renderer/renderer.h"
 
-// A picture of linear radiance, 4 floats a pixel, row 0 at the top; free() it.
+// An image of linear radiance, 4 floats a pixel, row 0 at the top; free() it.
 struct test_picture {
     uint32_t width;
     uint32_t height;

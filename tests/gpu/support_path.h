@@ -1,4 +1,4 @@
-// Pictures of the reference path tracer as tests want them: one call, all samples.
+// Images of the reference path tracer as tests want them: one call, all samples.
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_PATH_H
 #define VOXCAST_TESTS_GPU_SUPPORT_PATH_H
 
@@ -14,7 +14,7 @@ struct path_params {
     uint32_t height;
     uint32_t samples;  // paths per pixel
     uint32_t bounces;  // of indirect light: light is reflected at most 1 + bounces times
-    uint64_t seed;     // the same seed gives the same picture, whatever the threads
+    uint64_t seed;     // the same seed gives the same image, whatever the threads
     uint32_t threads;  // 0: two
     bool pixel_center; // rays through pixel centres; else spread evenly over the pixels
     enum reference_estimator estimator;
@@ -29,7 +29,7 @@ struct path_picture {
     float *indirect; // light reflected twice or more
 };
 
-// False when out of memory. The caller finishes the picture.
+// False when out of memory. The caller finishes the image.
 bool path_trace(const struct path_params *params, struct path_picture *out_picture);
 void path_picture_finish(struct path_picture *picture);
 

@@ -1,4 +1,4 @@
-// What the tests of voxels share: a volume filled without drawing a picture, what lies in its
+// What the tests of voxels share: a volume filled without drawing an image, what lies in its
 // voxels as sorted records, and scenes that place triangles on voxels exactly.
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_VOXELS_H
 #define VOXCAST_TESTS_GPU_SUPPORT_VOXELS_H

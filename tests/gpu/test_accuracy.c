@@ -1,4 +1,4 @@
-// Proves voxcast accuracy: ladders are read or refused with a reason, the Pareto front is what it
+// Proves voxcast accuracy: sweeps are read or refused with a reason, the Pareto front is what it
 // should be for made-up results, and a small run writes its files, keeps them, and goes on where it
 // was stopped.
 #include <math.h>
@@ -128,7 +128,7 @@ static cJSON *made_up_entry(const char *name, double ms, double flip, double ssi
     return entry;
 }
 
-// Whether the rung is on the front of the metric.
+// Whether the configuration is on the front of the metric.
 static bool is_marked(const cJSON *results, const char *name, const char *metric)
 {
     const cJSON *entry, *item;
@@ -163,7 +163,7 @@ static void test_pareto_front(void **state)
     // Too dark is as wrong as too bright.
     assert_true(is_marked(results, "good", "energy_red"));
     assert_false(is_marked(results, "slower", "energy_red"));
-    // A rung measured again takes its old place, and marks change.
+    // A configuration measured again takes its old place, and marks change.
     results_add(results, made_up_entry("fast", 1.0, 0.05, 0.99));
     assert_int_equal(cJSON_GetArraySize(at(results, "rungs")), 4);
     assert_false(is_marked(results, "good", "ldr_flip"));
@@ -224,7 +224,7 @@ static void test_a_run(void **state)
         "half-error.png", "half-strip.png", "half-converged.png"};
     write_file("ladder.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}]");
     assert_int_equal(run_accuracy("48x27"), 0);
-    // A second rung is measured; the first is not measured again.
+    // A second configuration is measured; the first is not measured again.
     cJSON *results = read_results();
     double first_ms =
         at(at(cJSON_GetArrayItem(at(results, "rungs"), 0), "frame_ms"), "median")->valuedouble;
@@ -252,7 +252,7 @@ static void test_a_run(void **state)
     assert_true(at(at(half, "edit"), "arrived_ms")->valuedouble > 0.0);
     assert_true(at(half, "memory_bytes")->valuedouble > 0.0);
     assert_true(at(at(half, "converged"), "settled")->type == cJSON_True);
-    // The truth of 16 samples errs, but less than what has no indirect light.
+    // The reference image of 16 samples errs, but less than what has no indirect light.
     const cJSON *noise = at(at(at(results, "noise"), "indirect"), "rmse");
     assert_true(at(noise, "reference")->valuedouble > 0.0);
     assert_true(at(noise, "reference")->valuedouble < 0.5 * at(dark, "rmse")->valuedouble);

@@ -1,4 +1,4 @@
-// Proves that pictures displayed on the CPU are those that the renderer displays: one scene by each
+// Proves that images displayed on the CPU are those that the renderer displays: one scene by each
 // tone curve, with fixed and automatic exposure, from its linear radiance and from the GPU.
 #include <math.h>
 #include <setjmp.h>
@@ -35,7 +35,7 @@ static struct picture linear_picture(struct renderer *renderer, struct frame_par
     return picture;
 }
 
-// Largest difference in steps of a byte between the renderer's picture and ours.
+// Largest difference in steps of a byte between the renderer's image and ours.
 static void compare(struct renderer *renderer, const struct frame_params *given,
                     const struct picture *radiance)
 {

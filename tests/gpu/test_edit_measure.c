@@ -1,4 +1,4 @@
-// Proves the measuring of edits: by direct light alone a picture is what an edit makes of it in one
+// Proves the measuring of edits: by direct light alone an image is what an edit makes of it in one
 // frame; by voxels the first of the change is there in one frame, and the rest comes in order. The
 // scene is afterwards as it was before, and what cannot be measured is refused with a reason.
 #include <setjmp.h>

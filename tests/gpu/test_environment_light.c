@@ -1,6 +1,6 @@
 // Proves that an equirectangular image lights a scene as it should: one of a constant colour as the
 // constant environment does, and one with a sun of a single texel as the path tracer says. How: the
-// images are written as OpenEXR files and loaded; pictures are compared as linear radiance.
+// images are written as OpenEXR files and loaded; images are compared as linear radiance.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -119,7 +119,7 @@ static void test_a_constant_image_is_a_constant_sky(void **state)
     gi_report_finish(&report);
 }
 
-// Light that the ball reflects, on average over the picture. What is seen beside it cancels out.
+// Light that the ball reflects, on average over the image. What is seen beside it cancels out.
 static double reflected(bool metal, int side, int sun_texel, enum gi_method method)
 {
     const float sky[3] = {0.3f, 0.3f, 0.3f};

@@ -1,6 +1,6 @@
 // Proves that global illumination is planned as everything else is: leaving out what a scene does
 // not need changes no pixel, each thing that needs an effect turns it on and, once gone, off with
-// its memory, and a converged picture costs nothing more.
+// its memory, and a converged image costs nothing more.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

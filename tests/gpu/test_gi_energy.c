@@ -1,7 +1,7 @@
-// Proves that indirect light is as much as it should be: means over pictures, by colour, against
+// Proves that indirect light is as much as it should be: means over images, by colour, against
 // the reference path tracer, in the Cornell box and in scenes that nobody tunes to.
 //
-// Where only lights and planar emitters light, indirect light is compared alone: the picture with
+// Where only lights and planar emitters light, indirect light is compared alone: the image with
 // global illumination minus the one without. Skies and glowing bodies are compared as a whole,
 // since without global illumination their light is not blocked, or not there.
 //
@@ -62,7 +62,7 @@ static const struct energy_case {
      VOXEL_RESOLUTION_AUTO},
 };
 
-// The reference, averaged down to the picture's size.
+// The reference, averaged down to the image's size.
 static void trace(const struct scene *scene, const struct energy_case *c,
                   const struct view_camera *camera, struct test_picture *out_picture)
 {

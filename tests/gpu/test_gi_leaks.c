@@ -19,7 +19,7 @@
 #define RESOLUTION         64.0
 #define ONE_VOXEL_FRACTION 0.01
 #define NOTHING            1e-6
-// Along the edges of turned walls a little comes through: a tenth of a step of an 8-bit picture in
+// Along the edges of turned walls a little comes through: a tenth of a step of an 8-bit image in
 // which the lit room is white.
 #define TURNED_NOTHING 4e-4
 

@@ -1,4 +1,4 @@
-// Proves that pictures gathered by rays show what lies between voxels: light under a low table, and
+// Proves that images gathered by rays show what lies between voxels: light under a low table, and
 // a room in a mirror, against the reference path tracer, where those gathered from voxels do not;
 // and the shadows of lights that have a size.
 #include <math.h>

@@ -75,7 +75,7 @@ static double largest_difference(const struct test_picture *a, const struct test
 }
 
 // Compares what the view converges to with what a fresh view shows after the scene was taken away
-// and shown anew; and that with a picture without global illumination.
+// and shown anew; and that with an image without global illumination.
 static void check_rest(struct gi_report *report, struct renderer *renderer, struct view *view,
                        struct scene *scene, struct frame_params params, const char *what)
 {

@@ -1,4 +1,4 @@
-// Proves that each debug view makes a finite picture with every method of global illumination, that
+// Proves that each debug view makes a finite image with every method of global illumination, that
 // the views of voxels show the scene where it is, and that views with nothing to show say so.
 #include <math.h>
 #include <setjmp.h>
@@ -136,7 +136,7 @@ static void test_albedo_shows_the_walls(void **state)
     (void)state;
     static const struct {
         const char *what;
-        float x, y; // in the picture
+        float x, y; // in the image
         enum voxel_face face;
         bool red, green, blue; // much of each
     } walls[] = {
@@ -210,7 +210,7 @@ static void test_opacity_covers_the_scene(void **state)
     gi_report_finish(&report);
 }
 
-// The view of indirect diffuse light is what that light adds to the picture.
+// The view of indirect diffuse light is what that light adds to the image.
 static void test_indirect_light_alone_is_the_difference(void **state)
 {
     (void)state;
@@ -242,7 +242,7 @@ static void test_indirect_light_alone_is_the_difference(void **state)
     gi_report_finish(&report);
 }
 
-// The picture is grey, and the statistics tell why.
+// The image is grey, and the statistics tell why.
 static void test_blank_views_say_why(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // Proves that imported scenes render: draws every sample of the khronos and features folders once,
-// small, and checks that the picture is finite, that GL reports no error, and that something else
+// small, and checks that the image is finite, that GL reports no error, and that something else
 // than the background is seen (but for files that hold only points or lines). Says so and skips
 // where the folder of test scenes is absent.
 #include <dirent.h>

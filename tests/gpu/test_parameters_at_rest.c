@@ -1,6 +1,6 @@
-// Proves that nothing of before is left in a picture after any parameter has changed: each row of
-// the table is set after a picture has come to rest, drawn to rest, and compared with a view of a
-// scene made anew in that state; then it is set back and compared with the first picture. So what a
+// Proves that nothing of before is left in an image after any parameter has changed: each row of
+// the table is set after an image has come to rest, drawn to rest, and compared with a view of a
+// scene made anew in that state; then it is set back and compared with the first image. So what a
 // new setting must reach cannot be forgotten.
 #include <math.h>
 #include <setjmp.h>
@@ -244,7 +244,7 @@ static struct parameter_value get(struct stage *stage, const struct parameter *p
     return value;
 }
 
-// Largest difference of two pictures, of 255.
+// Largest difference of two images, of 255.
 static double difference(const struct test_picture *a, const struct test_picture *b)
 {
     double maximum = 0;
@@ -279,7 +279,7 @@ static bool is_chosen(const struct parameter *parameter)
 struct changed {
     struct parameter_value value;
     struct test_picture picture; // at rest after the change
-    double back;                 // difference to the first picture once it was set back
+    double back;                 // difference to the first image once it was set back
 };
 
 struct run {
@@ -322,7 +322,7 @@ static void draw_changes(struct run *run)
     close_stage(&stage);
 }
 
-// How far the picture is from one by a view that has never known anything else: of a scene made
+// How far the image is from one by a view that has never known anything else: of a scene made
 // anew, or at least with voxels of its own, where the scene is the same.
 static void judge_change(struct run *run, const struct changed *changed, struct stage *shared,
                          struct gi_report *report, uint32_t *without_effect)

@@ -27,7 +27,7 @@ static struct path_params path_params(const struct scene *scene, uint32_t sample
     };
 }
 
-// Mean of the red channel over the picture.
+// Mean of the red channel over the image.
 static double trace_mean(const struct path_params *params, enum layer layer)
 {
     struct path_picture picture;
@@ -395,7 +395,7 @@ static struct scene *load_builtin_without_sky(const char *name)
     return scene;
 }
 
-// Means over the picture: the renderer takes an emitter's shadow from its centre, which moves
+// Means over the image: the renderer takes an emitter's shadow from its centre, which moves
 // light, but on the whole neither adds nor loses much. Both look along the same rays: a light is
 // much brighter than what it lights, and few pixels wide.
 static void check_direct_light(struct gi_report *report, struct scene *scene, double tolerance)

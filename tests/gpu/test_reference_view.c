@@ -1,5 +1,5 @@
 // Proves that a view by the method `reference` shows what the path tracer computes, through the
-// same outputs as every other picture, shows direct light until then, and leaves nothing behind
+// same outputs as every other image, shows direct light until then, and leaves nothing behind
 // when the method changes.
 #include <math.h>
 #include <setjmp.h>
@@ -26,7 +26,7 @@ struct fixture {
     struct scene *scene;
     struct frame_params params;
     float pixels[PIXELS * 4];
-    uint32_t samples; // of the newest picture
+    uint32_t samples; // of the newest image
 };
 
 static struct fixture fixture;

@@ -1,6 +1,6 @@
-// Proves that views do not change each other's pictures: one with settings of its own has voxels of
+// Proves that views do not change each other's images: one with settings of its own has voxels of
 // its own, one that takes shadow cascades leaves those of others where they were, and when shared
-// settings change, more views than there are volumes can be drawn. How: pictures of a view that is
+// settings change, more views than there are volumes can be drawn. How: images of a view that is
 // drawn anew after its neighbour are compared bit by bit.
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 // Proves which edits voxelize: those of lights and materials never do, the camera's and objects'
-// motion does, and a picture that repeats does nothing at all. Reads the frame's statistics.
+// motion does, and an image that repeats does nothing at all. Reads the frame's statistics.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

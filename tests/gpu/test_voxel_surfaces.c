@@ -126,7 +126,7 @@ static double linear_of(uint8_t byte)
     return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
 }
 
-// A picture of random squares, every other one clear; and its mean, linear.
+// An image of random squares, every other one clear; and its mean, linear.
 static uint32_t add_picture(struct scene *scene, double out_mean[4])
 {
     uint8_t *rgba = malloc((size_t)IMAGE_EDGE * IMAGE_EDGE * 4);

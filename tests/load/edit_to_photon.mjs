@@ -1,6 +1,6 @@
 // Measures edit to photon in Chromium on this machine: opens the client at 640 by 360, drags the
 // intensity of a light step by step, and takes the time from each edit to the animation frame after
-// the picture that shows it. Prints JSON; stops by itself.
+// the image that shows it. Prints JSON; stops by itself.
 // Run: VOXCASTD=build/release/bin/voxcastd node tests/load/edit_to_photon.mjs [--edits 50]
 import { parseArgs } from 'node:util';
 
@@ -46,7 +46,7 @@ async function measure(count) {
 }
 
 const daemon = await startDaemon([values.scene]);
-// The picture fills what the bar leaves when the panel is shut.
+// The image fills what the bar leaves when the panel is shut.
 const browser = await openBrowser({ width: STAGE.width, height: STAGE.height + 44 });
 try {
   const { page } = browser;

@@ -1,4 +1,4 @@
-// Small scenes and pictures for tests of the reference path tracer. All fail the test when memory
+// Small scenes and images for tests of the reference path tracer. All fail the test when memory
 // ends.
 #ifndef VOXCAST_TESTS_UNIT_SUPPORT_REFERENCE_H
 #define VOXCAST_TESTS_UNIT_SUPPORT_REFERENCE_H
@@ -34,7 +34,7 @@ struct reference_params support_narrow_view(const float eye[3], const float targ
 struct reference *support_reference_create(const struct scene *scene,
                                            const struct reference_params *params);
 
-// Means of red, green and blue over the picture of a set of layers after so many samples.
+// Means of red, green and blue over the image of a set of layers after so many samples.
 void support_reference_mean(const struct scene *scene, const struct reference_params *params,
                             uint32_t samples, uint32_t layers, double out_mean[3]);
 

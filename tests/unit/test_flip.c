@@ -1,5 +1,5 @@
 // Proves LDR-FLIP by the paper's formulas, evaluated anew, pixel by pixel, in double precision,
-// with two-dimensional filters as the paper writes them (Andersson et al. 2020): pictures of random
+// with two-dimensional filters as the paper writes them (Andersson et al. 2020): images of random
 // blocks, whose every pixel's error must agree. HDR-FLIP is LDR-FLIP at its exposures.
 #include <math.h>
 #include <setjmp.h>
@@ -17,7 +17,7 @@
 #define WIDTH  23
 #define HEIGHT 17
 
-// Linear RGB of one picture.
+// Linear RGB of one image.
 typedef double plane[HEIGHT][WIDTH][3];
 
 static const double xyz_from_rgb[3][3] = {{0.41239080, 0.35758434, 0.18048079},
@@ -212,7 +212,7 @@ static void test_every_pixel_agrees(void **state)
         picture_finish(&pictures[i]);
 }
 
-// Each exposure's pictures, by the curve of the paper, compared as displayed ones.
+// Each exposure's images, by the curve of the paper, compared as displayed ones.
 static void test_hdr_is_the_largest_of_its_exposures(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-// Proves that picture files are decoded with limits held before decoding, and that Radiance files
-// become environments of linear floats. How: tiny pictures written here byte by byte.
+// Proves that image files are decoded with limits held before decoding, and that Radiance files
+// become environments of linear floats. How: tiny images written here byte by byte.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 // Proves the measures of error by perturbations whose values follow by hand: constant offsets and
 // factors, single bad pixels, known quantiles, and the fixed points of SSIM and FLIP. Files of
-// float pictures are written, read back, and broken.
+// float images are written, read back, and broken.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +35,7 @@ static struct picture grey(uint32_t width, uint32_t height, float value)
     return filled(width, height, value, value, value);
 }
 
-// Smooth shading, hard edges, texture and a bright spot: what pictures of scenes are made of.
+// Smooth shading, hard edges, texture and a bright spot: what images of scenes are made of.
 static struct picture synthetic(void)
 {
     struct picture picture;
@@ -102,7 +102,8 @@ static void test_constant_offset(void **state)
     assert_near(values[METRIC_RMSE], sqrt((0.01 + 0.015625) / 3.0), 1e-6);
     assert_near(values[METRIC_MAE], (0.1 + 0.125) / 3.0, 1e-6);
     assert_near(values[METRIC_P95], (0.1 + 0.125) / 3.0, 1e-6);
-    // Squared error over 1.01 times the square of the truth, which is the same everywhere.
+    // Squared error over 1.01 times the square of the reference image, which is the same
+    // everywhere.
     assert_near(values[METRIC_REL_MSE], (0.04 + 1.0) / 1.01 / 3.0, 1e-6);
     assert_near(values[METRIC_ENERGY_RED], 1.2, 1e-6);
     assert_near(values[METRIC_ENERGY_GREEN], 1.0, 1e-6);
@@ -167,7 +168,7 @@ static void test_pixels_that_are_not_finite(void **state)
 static void test_ssim(void **state)
 {
     (void)state;
-    // Of constant pictures, only the term of means is left.
+    // Of constant images, only the term of means is left.
     struct picture a = grey(32, 20, 0.5f), b = grey(32, 20, 0.7f);
     double wanted = (2.0 * 0.5 * 0.7 + 1e-4) / (0.25 + 0.49 + 1e-4);
     assert_near(measure(&a, &b, &plain).values[METRIC_SSIM], wanted, 1e-6);
@@ -276,7 +277,7 @@ static void test_hdr_flip(void **state)
     assert_near((x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f), 0.85, 1e-5);
     assert_near(exposures.stop_stops - exposures.start_stops, 4.0, 1e-5);
     assert_int_equal(exposures.count, 4);
-    // A black picture has an exposure, too.
+    // A black image has an exposure, too.
     struct picture black = grey(20, 20, 0.0f);
     assert_int_equal(flip_find_exposures(&black).count, 1);
     // The unit of radiance does not matter.

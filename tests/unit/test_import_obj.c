@@ -219,7 +219,7 @@ static void test_materials(void **state)
 
     const struct scene_material *rich = find_material(scene, "rich one");
     assert_float_equal(rich->roughness, 0.3f, TOLERANCE);
-    assert_float_equal(rich->metallic, 1, 0); // the picture holds it
+    assert_float_equal(rich->metallic, 1, 0); // the image holds it
     assert_int_equal(texel_of(scene, rich, SCENE_TEXTURE_METALLIC_ROUGHNESS, 2)[2], 30);
     assert_int_equal(texel_of(scene, rich, SCENE_TEXTURE_METALLIC_ROUGHNESS, 2)[1], 255);
     assert_int_equal(rich->alpha_mode, SCENE_ALPHA_MASK);

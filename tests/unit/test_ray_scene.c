@@ -153,7 +153,7 @@ static void test_holes_of_masks(void **state)
     struct ray_hit hit;
     assert_true(cast_down(ray_scene, -0.5f, 0.1f, &hit));
     assert_false(cast_down(ray_scene, 0.5f, 0.1f, &hit));
-    // The same picture does not matter to an opaque material, nor after the texture is shifted.
+    // The same image does not matter to an opaque material, nor after the texture is shifted.
     material.alpha_mode = SCENE_ALPHA_OPAQUE;
     scene_set_material(scene, 0, &material);
     ray_scene_update_materials(ray_scene);

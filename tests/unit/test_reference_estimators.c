@@ -1,6 +1,6 @@
 // Proves that aiming at lights and following what surfaces scatter agree, as do both weighted: two
 // independent estimators of the same light, whose only common cause is the physics. How: means over
-// pictures by many seeds each, whose spread tells what chance allows.
+// images by many seeds each, whose spread tells what chance allows.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

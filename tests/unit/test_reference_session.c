@@ -1,5 +1,5 @@
 // Proves how a reference works rather than what it shows: the same bits whatever the threads and
-// interruptions, stopping, pictures per bounce that sum up, an estimate of noise that is right, and
+// interruptions, stopping, images per bounce that sum up, an estimate of noise that is right, and
 // snapshots that live on when the document changes.
 #include <stdarg.h>
 #include <stddef.h>
@@ -188,7 +188,7 @@ static void test_fewer_bounces_are_a_part(void **state)
     }
 }
 
-// The noise that is told against the difference of two independent pictures.
+// The noise that is told against the difference of two independent images.
 static void test_noise_is_estimated(void **state)
 {
     struct fixture *fixture = *state;

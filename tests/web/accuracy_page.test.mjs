@@ -1,5 +1,5 @@
 // Proves the page that ./dev accuracy writes, from made-up results whose figures are known: tables, what is on the
-// front, what noise makes unsure, what steps of settings buy, the windows that err most, the picture files, and the figures
+// front, what noise makes unsure, what steps of settings buy, the windows that err most, the image files, and the figures
 // that are kept.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';

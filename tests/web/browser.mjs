@@ -1,4 +1,4 @@
-// Starts Chromium for tests, and looks at the client's picture.
+// Starts Chromium for tests, and looks at the client's image.
 import { createRequire } from 'node:module';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -42,7 +42,7 @@ export async function openBrowser(viewport = { width: 1280, height: 800 }) {
 }
 
 /**
- * Opens the client and waits for its first picture, by direct light and with the quickest preset: others
+ * Opens the client and waits for its first image, by direct light and with the quickest preset: others
  * are not still for long.
  */
 export async function openClient(page, daemon) {
@@ -79,7 +79,7 @@ export async function openScene(scene) {
   }
 }
 
-/** Waits until this page's edits and camera are shown and the picture is done and has not changed for `ms`. */
+/** Waits until this page's edits and camera are shown and the image is done and has not changed for `ms`. */
 export async function untilStill(page, ms = 500) {
   await page.waitForFunction(
     () =>
@@ -94,7 +94,7 @@ export async function untilStill(page, ms = 500) {
   } while (last !== (await state()) || !last.endsWith('true'));
 }
 
-/** The mean colour (0 to 255) of a part of the picture; the part is in shares of its size. */
+/** The mean colour (0 to 255) of a part of the image; the part is in shares of its size. */
 export function meanColor(page, part = { x: 0, y: 0, width: 1, height: 1 }) {
   return page.evaluate((share) => {
     const picture = document.getElementById('picture');
@@ -113,7 +113,7 @@ export function meanColor(page, part = { x: 0, y: 0, width: 1, height: 1 }) {
   }, part);
 }
 
-/** The picture as bytes, to compare with another. */
+/** The image as bytes, to compare with another. */
 export function pixels(page) {
   return page.evaluate(() => {
     const picture = document.getElementById('picture');
@@ -124,7 +124,7 @@ export function pixels(page) {
   });
 }
 
-/** The mean difference (0 to 255) of two pictures of one size. */
+/** The mean difference (0 to 255) of two images of one size. */
 export function difference(a, b) {
   if (a.length !== b.length) throw new Error('the pictures differ in size');
   let sum = 0;

@@ -1,5 +1,5 @@
 // Proves that the accuracy tab and the daemon measure together: Chromium measures a small view of the Cornell box,
-// draws with what it found, lays truth and errors over the picture, and cancels a second measurement.
+// draws with what it found, lays truth and errors over the image, and cancels a second measurement.
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 
@@ -13,7 +13,7 @@ describe('the tab of accuracy and the daemon', () => {
   before(async () => {
     client = await openScene('builtin:cornell');
     ({ page } = client);
-    // The stage stays as it is; only the picture is small, so that the path tracer is soon done.
+    // The stage stays as it is; only the image is small, so that the path tracer is soon done.
     await page.evaluate(async (width) => {
       const { connection, view } = globalThis.voxcast;
       const height = Math.round((width * view.size.height) / view.size.width);

@@ -42,7 +42,7 @@ describe('a server that goes away', () => {
     await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }));
     await untilStill(page, 1000);
     assert.equal(await page.locator('[data-light]').count(), 0, 'the new server has no such light');
-    // Nothing tells which still picture is the first without indirect light.
+    // Nothing tells which still image is the first without indirect light.
     for (const end = Date.now() + PATIENCE_MS; difference(turned, await pixels(page)) >= 1; await untilStill(page, 1000))
       assert.ok(Date.now() < end, 'the camera stays where it was');
   });

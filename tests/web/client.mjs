@@ -152,7 +152,7 @@ export class Client {
     throw new Error(`nothing came in ${ms} ms: ${what}`);
   }
 
-  /** Waits until the picture is done and no frame has come for `ms` since. */
+  /** Waits until the image is done and no frame has come for `ms` since. */
   async untilStill(ms = 600) {
     let count = -1;
     while (count !== this.frames.length || !this.frames.at(-1)?.converged) {

@@ -1,6 +1,6 @@
 // Proves the client's maths without a browser: projection against values worked out by hand and
 // against its own inverse, rotations against known turns, node places against their inverse, the
-// camera's movements by what must stay the same, and the size of the picture.
+// camera's movements by what must stay the same, and the size of the image.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

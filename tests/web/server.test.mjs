@@ -318,7 +318,7 @@ test('wants the token', async () => {
 test('keeps the last good texture while its file is broken', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'voxcast-'));
   const path = join(folder, 'textured.obj');
-  // A TGA picture of one pixel: no other format is as easily written by hand.
+  // A TGA image of one pixel: no other format is as easily written by hand.
   const header = [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0];
   const picture = (blue) => Buffer.from([...header, blue, 20, 30]);
   writeFileSync(join(folder, 'colour.tga'), picture(10));

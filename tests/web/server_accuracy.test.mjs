@@ -1,7 +1,7 @@
 // Proves that clients measure accuracy as PROTOCOL.md says: a measurement goes from the reference to
-// the last rung, tells how far it is, leaves files that hold finite figures and nothing else, ends
-// when it is told to, and goes with its client; another client's pictures stay the same bits and go
-// on coming; a rung changes its own client's pictures only.
+// the last configuration, tells how far it is, leaves files that hold finite figures and nothing else, ends
+// when it is told to, and goes with its client; another client's images stay the same bits and go
+// on coming; a configuration changes its own client's images only.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_accuracy.test.mjs
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
@@ -15,7 +15,7 @@ import { Client, startDaemon, stopDaemon } from './client.mjs';
 const QUICK = ['live', 'none', 'draft', 'interactive', 'high', 'final'];
 const OVER = ['done', 'cancelled', 'failed'];
 
-/** A client with a small view of its own whose picture has come to rest. */
+/** A client with a small view of its own whose image has come to rest. */
 async function arrive(daemon, view = {}) {
   const client = await Client.open(daemon.url);
   client.hello = (await client.call('session.hello', {})).result;
@@ -59,7 +59,7 @@ function rawStatus(port, path) {
   });
 }
 
-/** Turns the camera and waits for the picture at rest there. */
+/** Turns the camera and waits for the image at rest there. */
 async function look(client, x, revision) {
   const from = client.frames.length;
   const { fov_y_rad: fov } = client.hello.camera;
@@ -197,7 +197,7 @@ describe('accuracy', () => {
     assert.equal((await get(daemon, traced.measurement, 'results.json')).status, 404);
     // A new one takes the place of an old one.
     const measured = await start(client, { noise: 0.1, ladder: 'full' });
-    assert.equal(measured.rung_count, 53); // the live one and those of the ladder
+    assert.equal(measured.rung_count, 53); // the live one and those of the sweep
     await client.until(() => folders().length === 1, 'the folder of the old one is gone');
     await heard(client, measured.measurement, ({ done }) => done === 1, 'a rung');
     await client.call('accuracy.cancel', {});
@@ -206,7 +206,7 @@ describe('accuracy', () => {
     const results = await (await get(daemon, measured.measurement, 'results.json')).json();
     assert.equal(results.rungs.length, end.done, 'what has been measured stays');
     assert.ok(results.rungs.every(({ edit }) => !edit.error), 'no rung is there in part');
-    // Where noise does not fall in time, the truth is what there is.
+    // Where noise does not fall in time, the reference image is what there is.
     const hasty = await start(client, { noise: 0.0005, seconds: 1 });
     const noisy = await heard(client, hasty.measurement, inState('rungs'), 'rungs after a second');
     assert.ok(noisy.noise > 0.0005, `noise ${noisy.noise}`);
@@ -241,7 +241,7 @@ describe('accuracy', () => {
     await client.call('settings.update', { set: { gi_method: 'grid' } });
     const times = { alone: [], 'while the reference is traced': [], 'while rungs are measured': [] };
     let pictures = [], revision = 0;
-    /** Pictures at rest from three places; notes how long each first frame took to be there. */
+    /** Images at rest from three places; notes how long each first frame took to be there. */
     const tour = async (when) => {
       const seen = [];
       for (const x of [0.1, -0.15, 0]) {
@@ -256,7 +256,7 @@ describe('accuracy', () => {
     };
     const same = (seen) => seen.every((picture, i) => pictures[i]?.equals(picture));
     const check = async (when) => assert.ok(same(await tour(when)), `${when}: the same bits as before`);
-    // Voxels gather light where somebody first looks, so that the first pictures are not the last.
+    // Voxels gather light where somebody first looks, so that the first images are not the last.
     for (let i = 0, seen = await tour(); !same(seen) && i < 10; i++, seen = await tour()) pictures = seen;
     for (let i = 0; i < 3; i++) await check('alone');
     const { measurement: id } = await start(client, { noise: 0.005, ladder: 'full' });
@@ -270,7 +270,7 @@ describe('accuracy', () => {
     await client.call('accuracy.cancel', {});
     await heard(client, second.measurement, inState('cancelled'), 'the end');
     await check('after');
-    // Rungs of other rows, methods, voxels, bounces, sizes.
+    // Configurations of other rows, methods, voxels, bounces, sizes.
     for (const rung of ['none', 'draft', 'final', 'grid-bounces-1', 'grid-cone_set-5', 'clipmap-64-pixel', '']) {
       const from = client.frames.length;
       await client.call('view.configure', { rung });
@@ -309,7 +309,7 @@ describe('accuracy', () => {
     assert.equal(bad.error?.data.field, 'rung');
     assert.match(bad.error.message, /no rung "best"; measured are live, none, draft/);
     assert.equal((await client.call('view.configure', {})).result.width, 64, 'nothing of it was set');
-    // Edits of shared settings come through where they are about how pictures are shown.
+    // Edits of shared settings come through where they are about how images are shown.
     await rung('draft');
     let from = client.frames.length;
     await client.call('settings.update', { set: { exposure_ev: 1 } });

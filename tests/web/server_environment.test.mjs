@@ -49,7 +49,7 @@ async function greet(daemon, params = {}, query = '') {
 
 const environmentOf = async (client) => (await client.call('scene.get')).result.environment;
 
-/** The newest frame once pictures have come to rest, of this revision of the document or later. */
+/** The newest frame once images have come to rest, of this revision of the document or later. */
 async function restingFrame(client) {
   const { revision } = (await client.call('scene.get')).result;
   await client.until(() => client.frames.some((f) => f.sceneRevision >= revision && f.converged), 'a resting frame');

@@ -86,7 +86,7 @@ describe('clients at fault', () => {
     assert.equal(await stopDaemon(daemon), 0);
   });
 
-  /** The good client gets a picture of a camera of its own, and the document is what it was. */
+  /** The good client gets an image of a camera of its own, and the document is what it was. */
   async function checkOthers(what) {
     const number = ++revision;
     await good.call('camera.set', { eye: [number / 1000, 0.27, 1.08], target: [0, 0.27, 0], revision: number });

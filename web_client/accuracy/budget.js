@@ -10,7 +10,7 @@ const errorOf = (/** @type {any} */ rung) => rung.converged?.metrics?.ldr_flip;
 const msOf = (/** @type {any} */ rung) => rung.frame_ms?.median;
 
 /**
- * The most accurate of the measured settings (least LDR-FLIP of the final picture) whose median frame keeps a
+ * The most accurate of the measured settings (least LDR-FLIP of the final image) whose median frame keeps a
  * budget; of equals the faster.
  * @param {any[]} rungs entries of results.json @param {number} budgetMs
  * @returns {{best: any | null, fastest: any | null}} best: null if none keeps it

@@ -36,7 +36,7 @@ export class Measurement extends EventTarget {
     this.revision = 0;
     /** @type {Progress | null} */
     this.progress = null;
-    /** @type {any} what results.json holds; null before the first rung */
+    /** @type {any} what results.json holds; null before the first configuration */
     this.results = null;
     this.hasReference = false;
     this.isFetching = false;

@@ -22,5 +22,5 @@ export function isSamePose(a, b) {
   );
 }
 
-/** Whether pictures of two sizes show the same part of the world. @param {number} a width over height @param {number} b */
+/** Whether images of two sizes show the same part of the world. @param {number} a width over height @param {number} b */
 export const isSameAspect = (a, b) => Math.abs(a / b - 1) <= MAX_ASPECT;

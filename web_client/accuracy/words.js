@@ -16,5 +16,5 @@ export function msText(ms) {
 /** Of a share: "3.1 %". @param {number} share */
 export const percentText = (share) => `${Number((100 * share).toPrecision(2))} %`;
 
-/** What people read for a rung. @param {string} name */
+/** What people read for a configuration. @param {string} name */
 export const rungTitle = (name) => (name === 'live' ? 'own settings as measured' : name);

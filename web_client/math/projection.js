@@ -1,4 +1,4 @@
-// Between the world and the picture. Places in the picture are 0 to 1, from the top left corner.
+// Between the world and the image. Places in the image are 0 to 1, from the top left corner.
 import { add, cross, dot, normalize, scale, subtract } from './vector.js';
 
 /** @typedef {import('./vector.js').Vector} Vector */
@@ -13,7 +13,7 @@ export function cameraAxes(camera) {
 }
 
 /**
- * Where a world point is in the picture, and its depth along the view axis in metres; null behind
+ * Where a world point is in the image, and its depth along the view axis in metres; null behind
  * the eye.
  * @param {CameraPose} camera @param {number} aspect width over height @param {Vector} point
  * @returns {{x: number, y: number, depth: number} | null}
@@ -32,7 +32,7 @@ export function projectPoint(camera, aspect, point) {
 }
 
 /**
- * The ray from the eye through a place of the picture.
+ * The ray from the eye through a place of the image.
  * @param {CameraPose} camera @param {number} aspect @param {number} x @param {number} y
  * @returns {Ray}
  */

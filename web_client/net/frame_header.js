@@ -21,7 +21,7 @@
  * @property {number} sendWaitUs
  * @property {number} drawAtUs
  * @property {number} sentAtUs
- * @property {number} referenceSamples per pixel, of a picture by the method reference; else 0
+ * @property {number} referenceSamples per pixel, of an image by the method reference; else 0
  * @property {number} referenceNoise standard error of a pixel over the mean luminance; 0: unknown
  */
 

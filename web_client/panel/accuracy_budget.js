@@ -25,7 +25,7 @@ export class AccuracyBudget {
         this.refresh();
         options.onMove();
       },
-      // Let go of: the picture follows.
+      // Let go of: the image follows.
       onchange: () => this.pick && options.onChoose(this.pick.name),
     });
     this.marks = element('div', { class: 'budget-marks', 'aria-hidden': 'true' });
@@ -33,12 +33,12 @@ export class AccuracyBudget {
     this.text = element('p', { class: 'budget-text' });
     this.use = element('button', { type: 'button', onclick: () => options.onChoose(this.pick.name) }, 'Draw with it');
     root.append(element('div', { class: 'budget' }, this.slider, this.marks), this.text, element('div', { class: 'actions' }, this.use));
-    /** @type {any} entry of the rung that the budget calls for */
+    /** @type {any} entry of the configuration that the budget calls for */
     this.pick = null;
     this.refresh();
   }
 
-  /** Milliseconds; infinite for still pictures. */
+  /** Milliseconds; infinite for still images. */
   get budgetMs() {
     return BUDGETS[this.slider.valueAsNumber].ms;
   }

@@ -117,7 +117,7 @@ export class AccuracyChart {
     this.#placeTip(mark);
   }
 
-  /** The final picture, or the strip, which has the first one; with its place, before it is there. */
+  /** The final image, or the strip, which has the first one; with its place, before it is there. */
   #makePicture(/** @type {any} */ rung) {
     const { width, height } = this.app.measurement.results.setup.scene;
     const isCold = this.choice.state === 'cold';
@@ -142,7 +142,7 @@ export class AccuracyChart {
   }
 }
 
-/** What the truth errs by itself, where that matters. */
+/** What the reference image errs by itself, where that matters. */
 function describeNoise(/** @type {any} */ results, /** @type {any} */ { part, metric }) {
   const noise = results.noise?.[part]?.[metric];
   if (!noise || noise.enough) return '';

@@ -7,7 +7,7 @@ const MODES = [
   { name: 'error', title: 'Error map' },
 ];
 
-/** What lies over the picture: nothing, the truth beside it, or where a setting errs. */
+/** What lies over the image: nothing, the reference image beside it, or where a setting errs. */
 export class AccuracyCompare {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
@@ -54,7 +54,7 @@ export class AccuracyCompare {
     return measurement.rung(view.rung || 'live') ?? measurement.rungs[0] ?? null;
   }
 
-  /** Why the measured pictures do not fit over the shown one; "" if they do. @returns {'' | 'camera' | 'shape'} */
+  /** Why the measured images do not fit over the shown one; "" if they do. @returns {'' | 'camera' | 'shape'} */
   #obstacle() {
     const view = this.measuredView;
     const { canvas } = this.app.picture;

@@ -55,7 +55,7 @@ export class AccuracyMeasure {
     this.begin.disabled = true;
     const { ladder, noise, seconds } = this.choice;
     try {
-      // The picture must not follow what is measured no longer.
+      // The image must not follow what is measured no longer.
       if (this.app.view.rung) await this.app.view.chooseRung('');
       await this.app.measurement.start({ ladder, noise: Number((noise / 100).toPrecision(6)), seconds });
     } catch (error) {

@@ -9,7 +9,7 @@ import { makeSection } from './sections.js';
 
 /** @typedef {import('./app_context.js').AppContext} AppContext */
 
-/** Lights: the list, adding and removing, every property; the environment; the picture's settings. */
+/** Lights: the list, adding and removing, every property; the environment; the image's settings. */
 export class LightTab {
   /** @param {HTMLElement} root @param {AppContext} app */
   constructor(root, app) {

@@ -16,7 +16,7 @@ export const isGiSetting = ({ name, needs = [] }) =>
 /** Whether this tab shows an option of the view. @param {string} name */
 export const isRenderOption = (name) => QUALITY_OPTIONS.includes(name) || DEBUG_OPTIONS.includes(name);
 
-/** How the picture is made: quality, global illumination, pictures of its parts, effects and why. */
+/** How the image is made: quality, global illumination, images of its parts, effects and why. */
 export class RenderTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {

@@ -20,7 +20,7 @@ const KEYS = [
 /** The stage decides the size, the tab of accuracy the measured setting; quality is in the tab of rendering. */
 const ELSEWHERE = ['width', 'height', 'rung'];
 
-/** How this client looks: picture size, pause, its camera, and the keys. */
+/** How this client looks: image size, pause, its camera, and the keys. */
 export class ViewTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {

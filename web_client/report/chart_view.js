@@ -6,7 +6,7 @@ globalThis.ErrorChartView = class {
   #options;
   /** @type {{ mark: SVGElement, point: any }[]} from fast to slow */
   #marks = [];
-  /** Name of the rung whose mark the Tab key comes to. */
+  /** Name of the configuration whose mark the Tab key comes to. */
   #current = '';
 
   /**

@@ -59,7 +59,7 @@ globalThis.errorChart = (() => {
   /** Three digits, or a dash. */
   const short = (value) => (typeof value === 'number' ? String(Number(value.toPrecision(3))) : '–');
 
-  /** The value of a metric of a rung, as its entry has it. @param {Choice} choice */
+  /** The value of a metric of a configuration, as its entry has it. @param {Choice} choice */
   const valueOf = (rung, choice, metric = choice.metric) => rung[choice.state]?.[choice.part]?.[metric];
 
   /** @returns {Point[]} what can be drawn on logarithmic axes */
@@ -81,7 +81,7 @@ globalThis.errorChart = (() => {
     return front;
   }
 
-  /** The settings of a rung in words. */
+  /** The settings of a configuration in words. */
   function settingText({ settings }) {
     const sets = Object.entries(settings.set).map(([key, value]) => `${key} ${value}`);
     const scale = settings.scale === 1 ? [] : [`scale ${settings.scale}`];
@@ -133,7 +133,7 @@ globalThis.errorChart = (() => {
     return shapes;
   }
 
-  /** A dotted line with words: what the truth errs by itself, or a limit of time. */
+  /** A dotted line with words: what the reference image errs by itself, or a limit of time. */
   function limitShapes({ x, y, area }, noise, budgetMs) {
     const { left, right, top, bottom } = area;
     const shapes = [];
@@ -197,7 +197,7 @@ globalThis.errorChart = (() => {
     return { tag: 'circle', attributes, point };
   }
 
-  /** Marks the rung that is live, or the one that is chosen. */
+  /** Marks the configuration that is live, or the one that is chosen. */
   const ringShape = (point, { x, y }, name) => ({
     tag: 'circle',
     attributes: { class: `ring ${name}`, cx: x.scale(point.ms), cy: y.scale(point.error), r: MARK_RADIUS + 4 },
@@ -207,7 +207,7 @@ globalThis.errorChart = (() => {
    * What the chart consists of, in the order of drawing.
    * @param {{ results: any, choice: Choice, width: number, height: number, live?: string, chosen?: string,
    *   budgetMs?: number, isNarrow?: boolean, labels?: 'front' | 'marked' }} params `live` and `chosen` are names
-   *   of rungs with a ring around them
+   *   of configurations with a ring around them
    * @returns {Shape[]}
    */
   function shapesOf({ results, choice, width, height, live, chosen, budgetMs = 0, isNarrow = false, labels = 'front' }) {

@@ -1,4 +1,4 @@
-// The page of an accuracy run: a chart of error against time, a table, and pictures, of what results.js
+// The page of an accuracy run: a chart of error against time, a table, and images, of what results.js
 // has left in globalThis.results. Opened from the disk, so it is no module and loads nothing.
 
 (() => {
@@ -46,7 +46,7 @@
     },
   });
 
-  /** The truth's own error by the metric chosen, in words. */
+  /** The reference image's own error by the metric chosen, in words. */
   function describeOwnError() {
     const noise = globalThis.results.noise[choice.part]?.[choice.metric];
     document.getElementById('noise').textContent = noise

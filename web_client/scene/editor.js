@@ -44,7 +44,7 @@ export class Editor {
   update(group, id, set, transient) {
     const key = `${group}/${id}`;
     const waiting = this.pending.get(key);
-    // An edit that settles what is there already changes no picture: it is not timed.
+    // An edit that settles what is there already changes no image: it is not timed.
     const now = this.#isNews(group, id, set) ? performance.now() : null;
     this.document.assign(group, id, set);
     const at = waiting?.at ?? now;

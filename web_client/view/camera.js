@@ -42,8 +42,8 @@ export class Camera extends EventTarget {
   }
 
   /**
-   * Moves across the picture so that the target's plane follows the hand.
-   * @param {number} x of the picture's height, right @param {number} y down
+   * Moves across the image so that the target's plane follows the hand.
+   * @param {number} x of the image's height, right @param {number} y down
    */
   pan(x, y) {
     const { right, up } = cameraAxes(this.pose);
@@ -64,7 +64,7 @@ export class Camera extends EventTarget {
     this.#shift(add(add(scale(right, x), scale(WORLD_UP, y)), scale(forward, z)));
   }
 
-  /** Looks at a ball from the same side, so that it fills the picture. */
+  /** Looks at a ball from the same side, so that it fills the image. */
   frame(/** @type {Vector} */ center, /** @type {number} */ radius, /** @type {number} */ aspect) {
     const halfY = this.pose.fov_y_rad / 2;
     const half = Math.min(halfY, Math.atan(Math.tan(halfY) * aspect));

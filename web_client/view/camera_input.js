@@ -1,5 +1,5 @@
 const CLICK_PX = 4;
-const TURN_RAD = Math.PI; // across the height of the picture
+const TURN_RAD = Math.PI; // across the height of the image
 const KEY_TURN_RAD_PER_S = 1.2;
 const WHEEL_FACTOR = 1.0015;
 const FAST = 4;
@@ -23,8 +23,8 @@ const TURN_KEYS = {
 };
 
 /**
- * Moves the camera by mouse, touch and keys over the picture. In orbit mode a drag turns about the
- * target, in fly mode about the eye. Keys work while the picture has the focus.
+ * Moves the camera by mouse, touch and keys over the image. In orbit mode a drag turns about the
+ * target, in fly mode about the eye. Keys work while the image has the focus.
  */
 export class CameraInput {
   /**

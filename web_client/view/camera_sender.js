@@ -2,7 +2,7 @@ const KEEP = 512;
 
 /**
  * Tells the server where the camera is, at most once per animation frame, and remembers the poses,
- * so that what is drawn over a picture can use the camera that took it.
+ * so that what is drawn over an image can use the camera that took it.
  */
 export class CameraSender {
   /**

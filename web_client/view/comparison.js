@@ -15,11 +15,11 @@ const OBSTACLES = {
  * @property {string} truthUrl
  * @property {string} errorUrl
  * @property {string} errorName whose errors they are
- * @property {'' | 'camera' | 'shape'} obstacle why measured pictures do not fit over the shown one
+ * @property {'' | 'camera' | 'shape'} obstacle why measured images do not fit over the shown one
  */
 
 /**
- * Lies over the picture: the truth to the right of a line that can be moved, or a map of errors with its scale.
+ * Lies over the image: the reference image to the right of a line that can be moved, or a map of errors with its scale.
  * Where they do not fit it says so. Event: `return`, to go back to the measured view.
  */
 export class Comparison extends EventTarget {
@@ -31,7 +31,7 @@ export class Comparison extends EventTarget {
     super();
     this.pictures = pictures;
     this.controls = controls;
-    /** Of the picture that is live. */
+    /** Of the image that is live. */
     this.share = 0.5;
     this.truth = element('img', { alt: 'The reference image', draggable: 'false' });
     this.error = element('img', { alt: '', draggable: 'false' });
@@ -54,7 +54,7 @@ export class Comparison extends EventTarget {
     this.obstacle.hidden = fits;
     this.goBack.hidden = obstacle !== 'camera';
     this.hint.textContent = obstacle ? OBSTACLES[obstacle] : '';
-    // Pictures are loaded when they are wanted.
+    // Images are loaded when they are wanted.
     if (mode === 'split') setSource(this.truth, truthUrl);
     if (mode === 'error') {
       setSource(this.error, errorUrl);

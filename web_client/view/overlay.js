@@ -21,9 +21,9 @@ function element(tag, attributes) {
 }
 
 /**
- * Draws over the picture: an icon for each light and, at the chosen thing, a handle with three axes
+ * Draws over the image: an icon for each light and, at the chosen thing, a handle with three axes
  * and a square that moves in the plane of the screen. All of it follows the camera of the shown
- * picture.
+ * image.
  *
  * Events: `light` (detail: id of a clicked light), `drag` (detail: the handle's new world position,
  * and `isLast`).
@@ -37,7 +37,7 @@ export class Overlay extends EventTarget {
     this.handleLayer = svg.appendChild(element('g', {}));
     /** @type {CameraPose | null} */
     this.pose = null;
-    /** Of the shown picture, which is stretched a little to fill the stage. */
+    /** Of the shown image, which is stretched a little to fill the stage. */
     this.aspect = 16 / 9;
     /** @type {{id: number, name: string, type: string, enabled: boolean, color: number[], position: Vector}[]} */
     this.lights = [];

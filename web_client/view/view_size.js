@@ -7,7 +7,7 @@ export const RENDER_SIZES = /** @type {Record<string, [number, number] | null>} 
 });
 
 /**
- * The size of the picture to ask for: the stage's shape and at most its pixels, within the chosen
+ * The size of the image to ask for: the stage's shape and at most its pixels, within the chosen
  * number of pixels and the server's limits.
  * @param {{width: number, height: number}} stage in CSS pixels
  * @param {number} pixelRatio

@@ -1,4 +1,4 @@
-// Cameras where none should stand, with lenses and pictures that nobody would choose.
+// Cameras where none should stand, with lenses and images that nobody would choose.
 #include <math.h>
 #include <string.h>
 
@@ -93,7 +93,7 @@ static void run_directions(struct stability_run *run)
 
 #define PROBES 12u
 
-// Some pixels against pictures of one pixel that look the same way.
+// Some pixels against images of one pixel that look the same way.
 static void probe(struct stability_run *run, struct scene *scene, const struct frame_params *params,
                   const struct picture *picture)
 {
@@ -156,7 +156,7 @@ static void run_shapes(struct stability_run *run)
     probe_shape(run, 17, 2160, 60.0);
 }
 
-// A card so near that it fills the picture.
+// A card so near that it fills the image.
 static void run_near(struct stability_run *run)
 {
     struct stage stage;
@@ -251,7 +251,7 @@ static const struct stability_case cases[] = {
      .invariant = "kilometres away and back, the picture settles to what it was",
      .methods = STABILITY_DRAWN,
      .bound = 0.004,
-     .voxel_bound = 0.016, // light has settled when 0.8 % are to come, in either picture
+     .voxel_bound = 0.016, // light has settled when 0.8 % are to come, in either image
      .unit = "of the brightest",
      .run = run_teleport},
 };

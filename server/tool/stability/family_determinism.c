@@ -78,7 +78,7 @@ static void run_shuffled(struct stability_run *run)
     picture_finish(&plain);
 }
 
-// The driver reads the number of its threads once a process, so each picture is another's.
+// The driver reads the number of its threads once a process, so each image is another's.
 static bool draw_with_threads(struct stability_run *run, int threads, const char *folder,
                               struct picture *out_picture)
 {

@@ -191,7 +191,7 @@ static bool stage_mean(struct stability_run *run, enum gi_method method, uint32_
     return done;
 }
 
-// What each bounce adds to the mean of the stage's picture, against what it adds to the
+// What each bounce adds to the mean of the stage's image, against what it adds to the
 // reference's.
 static void run_ratio(struct stability_run *run)
 {

@@ -68,7 +68,7 @@ static bool draw_frame(struct faults *faults, struct view *view, struct error *o
     return collected;
 }
 
-// The picture is what it was before there were faults.
+// The image is what it was before there were faults.
 static void check_reference(struct faults *faults, uint32_t number)
 {
     struct picture picture;

@@ -285,7 +285,7 @@ static void drop_uv(struct scene_vertex triangle[3], uint32_t number)
     }
 }
 
-// An even picture, and an even normal map.
+// An even image, and an even normal map.
 static uint32_t textured(struct stage *stage)
 {
     uint32_t material = two_sided(stage);

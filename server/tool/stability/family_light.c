@@ -1,4 +1,4 @@
-// Lamps of every strength in every place.
+// Lights of every strength in every place.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

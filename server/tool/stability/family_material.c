@@ -186,7 +186,7 @@ static struct scene_material make_glowing(float strength)
     return glowing;
 }
 
-// Two black walls that emit: the picture has just their radiance.
+// Two black walls that emit: the image has just their radiance.
 static void run_emission(struct stability_run *run)
 {
     static const float strengths[2] = {1e6f, 1e-3f};

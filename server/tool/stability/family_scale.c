@@ -1,4 +1,4 @@
-// The picture does not depend on the unit that a scene is in, nor on where it stands.
+// The image does not depend on the unit that a scene is in, nor on where it stands.
 #include <math.h>
 #include <string.h>
 

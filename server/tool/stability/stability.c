@@ -1,4 +1,4 @@
-// Runs cases: renderer, frames, pictures, and what is measured of them.
+// Runs cases: renderer, frames, images, and what is measured of them.
 #include "renderer/metrics/display.h"
 #include "renderer/metrics/picture.h"
 #include "server/accuracy/picture_file.h"
@@ -14,7 +14,7 @@
 #include "server/tool/cli.h"
 
 #define MAX_FRAMES 400u
-// Of a reference, a pixel: as many in each picture, so that they differ by what the scenes do.
+// Of a reference, a pixel: as many in each image, so that they differ by what the scenes do.
 #define REFERENCE_SAMPLES 16u
 
 double stability_bound(const struct stability_run *run)

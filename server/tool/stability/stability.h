@@ -87,7 +87,7 @@ void stability_renew(struct stability_run *run);
 // Small, with coarse voxels, interactive quality, fixed exposure and linear output.
 struct frame_params stability_params(const struct stability_run *run);
 
-// A scene that is shown in a view, for cases that draw frame by frame. Owns view and picture alone.
+// A scene that is shown in a view, for cases that draw frame by frame. Owns view and image alone.
 struct stability_view {
     struct stability_run *run;
     struct view *view;
@@ -107,15 +107,15 @@ enum render_result stability_view_draw(struct stability_view *view,
 bool stability_view_settle(struct stability_view *view, const struct frame_params *params);
 
 // Shows the scene in a view of its own until it has settled; a reference is traced without one. The
-// caller finishes the picture. False when the run has failed.
+// caller finishes the image. False when the run has failed.
 bool stability_draw(struct stability_run *run, struct scene *scene,
                     const struct frame_params *params, struct picture *out_picture);
 
-// Writes a picture as CASE-METHOD-NAME.png, as its own automatic exposure shows it (of black ones
+// Writes an image as CASE-METHOD-NAME.png, as its own automatic exposure shows it (of black ones
 // nothing), if results have a folder.
 void stability_keep(struct stability_run *run, const struct picture *picture, const char *name);
 
-// Mean LDR-FLIP between two pictures, both as the second's automatic exposure shows them.
+// Mean LDR-FLIP between two images, both as the second's automatic exposure shows them.
 double stability_flip(const struct picture *test, const struct picture *expected);
 
 // Greatest difference of a channel, relative to the brightest of `truth`; `out_pixel` (or NULL) is
@@ -123,7 +123,7 @@ double stability_flip(const struct picture *test, const struct picture *expected
 double stability_difference(const struct picture *test, const struct picture *expected,
                             uint32_t *out_pixel);
 
-// Measures stability_difference() and keeps both pictures. `what` ("" for nothing) tells which of
+// Measures stability_difference() and keeps both images. `what` ("" for nothing) tells which of
 // several comparisons it is.
 void stability_compare(struct stability_run *run, const struct picture *test,
                        const struct picture *expected, const char *what);
@@ -139,7 +139,7 @@ struct stability_choice {
     const char *name;
     const char *family;
     const char *gpu;    // as renderer_params has it
-    const char *folder; // for pictures and results.json; NULL for none
+    const char *folder; // for images and results.json; NULL for none
 };
 
 // Prints a table on stdout and writes results.json. `out_failures` counts failed runs. False with a

@@ -1,4 +1,4 @@
-// How far pictures are from each other.
+// How far images are from each other.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

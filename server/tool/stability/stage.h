@@ -8,7 +8,7 @@
 #include "server/tool/stability/stability.h"
 
 struct stage_params {
-    double scale;     // of everything; 0 is 1. The picture is to stay the same
+    double scale;     // of everything; 0 is 1. The image is to stay the same
     double offset[3]; // m, of everything, behind the scale
     float light_cd;   // before the scale; 0: the usual one
     bool no_light;
