@@ -158,7 +158,7 @@ static bool read_file(struct options *options, const char *path, struct error *e
     return fine;
 }
 
-// VOXCASTD_MAX_CLIENTS=4 is max-clients = 4.
+// For example, VOXCASTD_MAX_CLIENTS=4 means max-clients = 4.
 static bool read_environment(struct options *options, char *const *environment, struct error *error)
 {
     for (; environment && *environment; environment++) {
@@ -183,7 +183,7 @@ static bool read_environment(struct options *options, char *const *environment, 
     return true;
 }
 
-// One flag at `*index`, which moves to the last argument used.
+// Handles one flag at `*index` and moves the index to the last argument used.
 static bool read_flag(struct options *options, int count, char *const *arguments, int *index,
                       struct error *error)
 {

@@ -21,10 +21,10 @@ struct options {
     char web_dir[OPTIONS_TEXT_SIZE];
     char token_file[OPTIONS_TEXT_SIZE];
     char viewer_token_file[OPTIONS_TEXT_SIZE];
-    char allow_origin[OPTIONS_TEXT_SIZE]; // origins with commas between
+    char allow_origin[OPTIONS_TEXT_SIZE]; // origins, separated by commas
     uint32_t max_clients;
     uint32_t message_bytes;
-    uint32_t queue_bytes;  // of replies that may wait for one client
+    uint32_t queue_bytes;  // limit of replies that wait for one client
     uint32_t message_rate; // a second, for each client
     uint32_t jpeg_quality;
     uint32_t jpeg_threads;
@@ -39,12 +39,13 @@ enum options_result {
 };
 
 // Flags win over the environment, which wins over the file, which wins over the defaults.
-// `environment` is as environ. On OPTIONS_WRONG the message names option, value and range.
+// `environment` has the form of environ. On OPTIONS_WRONG the message names option, value and
+// range.
 enum options_result options_read(int argument_count, char *const *arguments,
                                  char *const *environment, struct options *out_options,
                                  struct error *out_error);
 
-// The text of --help, written at `size` bytes at most.
+// Writes the text of --help, at most `size` bytes.
 void options_write_help(char *out, size_t size);
 
 #endif

@@ -1,4 +1,4 @@
-// A whole run: the reference image, then every configuration that is not there yet.
+// A whole run: the reference image, then every configuration that is not measured yet.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #include "server/accuracy/picture_file.h"
 #include "renderer/clock.h"
 
-#define SELF_LIT_MARGIN 2 // pixels, as far as resampling at draft quality reaches
+#define SELF_LIT_MARGIN 2 // pixels: as far as upsampling from draft quality reaches
 
 static bool write_reference_png(const struct accuracy *accuracy, struct error *out_error)
 {
@@ -26,7 +26,7 @@ static bool write_reference_png(const struct accuracy *accuracy, struct error *o
     return done;
 }
 
-// Marks the pixels whose rays meet nothing or what shines, and those near by.
+// Marks the pixels whose rays hit nothing or an emitter, and the pixels near them.
 static bool find_self_lit(struct accuracy *accuracy, struct error *out_error)
 {
     const struct frame_params *params = &accuracy->shot.params;
@@ -65,7 +65,7 @@ static void choose_display(struct accuracy *accuracy)
         .exposure = exposure, .tonemap = settings->tonemap, .gamma = settings->gamma};
 }
 
-// How far the configurations are, and what they took in this run.
+// Progress of the configurations, and the time they took in this run.
 struct climb {
     const struct accuracy_run *run;
     const cJSON *results;
@@ -102,7 +102,7 @@ static bool write_results(const struct climb *climb, struct error *out_error)
            (!climb->run->with_report || results_write_report(climb->results, folder, out_error));
 }
 
-// Measures a configuration and writes everything anew.
+// Measures a configuration and writes all results anew.
 static bool measure_configuration(struct climb *climb, const struct configuration *configuration,
                                   cJSON *results, struct error *out_error)
 {
@@ -118,7 +118,7 @@ static bool measure_configuration(struct climb *climb, const struct configuratio
            (tell(climb) || error_set(out_error, "stopped after rung %s", configuration->name));
 }
 
-// Measures the configurations that are not there yet.
+// Measures the configurations that have no results yet.
 static bool measure_configurations(const struct accuracy_run *run, cJSON *results,
                                    struct error *out_error)
 {
@@ -128,7 +128,7 @@ static bool measure_configurations(const struct accuracy_run *run, cJSON *result
         if (!results_find(results, &run->sweep->configurations[i]))
             done =
                 measure_configuration(&climb, &run->sweep->configurations[i], results, out_error);
-    // With nothing to measure, the report may still be an older program's.
+    // Even with nothing to measure, the report may be from an older program.
     return done && (climb.measured_count > 0 || write_results(&climb, out_error));
 }
 

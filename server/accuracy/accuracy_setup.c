@@ -37,7 +37,8 @@ static uint64_t hash_path(uint64_t hash, const char *path)
     return stat(path, &status) == 0 ? hash_file(hash, path, &status) : hash;
 }
 
-// nftw() has no argument for its callback, and visits in no order: sums do not depend on it.
+// nftw() passes no argument to its callback and visits files in no fixed order, so hashes are
+// summed.
 static uint64_t shader_hash;
 
 static int add_shader(const char *path, const struct stat *status, int kind, struct FTW *walk)
@@ -87,7 +88,7 @@ cJSON *accuracy_identity(const char *source, const char *const *sets, uint32_t s
     return json;
 }
 
-// As it is written in the source: 0.2, not 0.200000003.
+// As written in the source: 0.2, not 0.200000003.
 static void add_float(cJSON *object, const char *name, float value)
 {
     char text[32];
@@ -140,7 +141,7 @@ static cJSON *reference_error(const struct accuracy *accuracy, struct error *out
     return NULL;
 }
 
-// All that results depend on, beside the configuration.
+// All that results depend on besides the configuration.
 cJSON *accuracy_setup(const struct accuracy *accuracy, const char *reference_path,
                       const cJSON *identity, struct error *out_error)
 {

@@ -11,7 +11,7 @@
 #define SWAY_STEP_RAD 0.03f
 #define SWAY_RAD      0.3f
 
-// Turns the eye about the vertical through the target.
+// Rotates the eye about the vertical axis through the target.
 static void sway_camera(const struct view_camera *from, uint32_t frame, struct view_camera *to)
 {
     *to = *from;

@@ -1,9 +1,9 @@
-// Frames that are waited for: one, the next of a moving camera, or as many as an image needs.
+// Waits for frames: a single one, the next of a moving camera, or as many as an image needs.
 #include "server/accuracy/converged_frames.h"
 
 #include <unistd.h>
 
-// Between looks at a reference that is being traced.
+// Pause between polls of a reference that is being traced.
 #define PENDING_US 10000
 
 bool frames_render_next(struct renderer *renderer, struct view *view,
@@ -28,7 +28,7 @@ bool frames_render(struct renderer *renderer, struct view *view, const struct fr
     return frames_render_next(renderer, view, params, out_pixels, out_error);
 }
 
-// Draws one frame more and keeps its pixels instead of the last one's.
+// Draws one more frame and keeps its pixels instead of the last frame's.
 static enum render_result render_one_more(struct converged_frames *render, struct error *out_error)
 {
     enum render_result result =
@@ -43,7 +43,7 @@ static enum render_result render_one_more(struct converged_frames *render, struc
         renderer_view_release(render->renderer, render->view);
     render->frame_count++;
     if (!renderer_view_collect(render->renderer, render->view, true, &render->pixels)) {
-        render->frame_count = 0; // nothing is held
+        render->frame_count = 0; // no pixels are held
         error_set(out_error, "the GPU did not finish the frame");
         return RENDER_FAILED;
     }

@@ -8,13 +8,13 @@
 
 #define FIRST_FRACTION   0.01
 #define ARRIVED_FRACTION 0.95
-#define MIN_CHANGE       1e-3 // of white; below it rounding would be measured
+#define MIN_CHANGE       1e-3 // of white; a smaller change would measure rounding
 
 const char *const edit_kind_names[EDIT_KIND_COUNT] = {"color", "intensity"};
 
 const char *const edit_stage_names[EDIT_STAGE_COUNT] = {"first", "arrived", "indirect", "settled"};
 
-// Time and frames from an edit on.
+// Time and frames since an edit.
 struct edit_moment {
     double ms;
     uint32_t frames;
@@ -24,21 +24,21 @@ struct edit_run {
     struct edit_moment stages[EDIT_STAGE_COUNT];
 };
 
-// One of the two states that edits lead to.
+// One of the two states that edits switch between.
 struct edit_state {
     struct scene_light light;
     struct scene_material material;
-    float *settled; // linear RGB, by exposure, not clipped
-    float *direct;  // direct light alone of the same
+    float *settled; // linear RGB times exposure, not clipped
+    float *direct;  // direct light alone of the same image
 };
 
 struct edit_bench {
     const struct edit_params *params;
     struct frame_params frame_params; // linear
     struct view *view;
-    uint32_t light, material; // one of them is SCENE_NONE
+    uint32_t light, material; // one of the two is SCENE_NONE
     float exposure;
-    double change, indirect_change; // between the settled images
+    double change, indirect_change; // between the converged images
     struct edit_state states[2];
     float *frame;
 };
@@ -60,7 +60,7 @@ static size_t float_count(const struct edit_bench *bench)
     return (size_t)bench->frame_params.width * bench->frame_params.height * 3;
 }
 
-// Mean absolute difference of what a display shows at most.
+// Mean absolute difference, clipped at what a display can show.
 static double clipped_difference(const struct edit_bench *bench, const float *a, const float *b)
 {
     double sum = 0.0;
@@ -70,7 +70,7 @@ static double clipped_difference(const struct edit_bench *bench, const float *a,
     return sum / (double)count;
 }
 
-// Mean absolute difference of indirect light, which is clipped nowhere.
+// Mean absolute difference of indirect light, without clipping.
 static double indirect_difference(const struct edit_bench *bench, const float *a,
                                   const float *direct_a, const float *b, const float *direct_b)
 {
@@ -89,7 +89,7 @@ static void apply_state(const struct edit_bench *bench, const struct edit_state 
         scene_set_material(bench->params->scene, bench->material, &state->material);
 }
 
-// On success the pixels must be released.
+// On success the caller must release the pixels.
 static bool draw_settled(struct edit_bench *bench, const struct frame_params *params,
                          struct frame_pixels *out_pixels, struct error *out_error)
 {
@@ -119,7 +119,7 @@ static bool draw_linear(struct edit_bench *bench, enum debug_view debug_view, fl
     return true;
 }
 
-// Linear images are not exposed, so a displayed one tells the exposure.
+// Linear images are not exposed, so a displayed one supplies the exposure.
 static bool find_exposure(struct edit_bench *bench, struct error *out_error)
 {
     struct frame_params params = bench->frame_params;
@@ -134,7 +134,7 @@ static bool find_exposure(struct edit_bench *bench, struct error *out_error)
     return true;
 }
 
-// Settled images of both states; the second state is left in place.
+// Converged images of both states; the second state stays applied.
 static bool draw_states(struct edit_bench *bench, struct error *out_error)
 {
     if (!find_exposure(bench, out_error))
@@ -158,7 +158,8 @@ static bool draw_states(struct edit_bench *bench, struct error *out_error)
     return draw_linear(bench, DEBUG_VIEW_FINAL, bench->frame, out_error);
 }
 
-// Judges one frame: moments are set when their share is first there, and reset when it is lost.
+// Evaluates one frame: a stage's time is set when its fraction of the change is first reached, and
+// reset when it is lost again.
 static void judge_frame(const struct edit_bench *bench, const struct edit_state *to,
                         const struct edit_moment *now, struct edit_run *run)
 {
@@ -177,7 +178,7 @@ static void judge_frame(const struct edit_bench *bench, const struct edit_state 
         run->stages[EDIT_INDIRECT] = *now;
 }
 
-// One edit, drawn until nothing changes. The time of comparing is left out.
+// Makes one edit and draws until nothing changes. The time for comparing is left out.
 static bool measure_edit(struct edit_bench *bench, const struct edit_state *to,
                          struct edit_run *out_run, struct error *out_error)
 {
@@ -220,7 +221,7 @@ static bool material_shines(const struct scene_material *material)
            material->emissive[0] + material->emissive[1] + material->emissive[2] > 0.0f;
 }
 
-// Decides what is edited.
+// Chooses what to edit.
 static bool choose_target(struct edit_bench *bench, struct error *out_error)
 {
     const struct scene *scene = bench->params->scene;
@@ -322,7 +323,7 @@ bool edit_measure(const struct edit_params *params, struct edit_result *out_resu
     make_states(&bench);
     bool done = allocate(&bench) || error_set(out_error, "out of memory");
     done = done && draw_states(&bench, out_error);
-    // The second state is in place, so the first edit leads back.
+    // The second state is applied, so the first edit leads back.
     for (uint32_t i = 0; i < params->repetitions && done; i++)
         done = measure_edit(&bench, &bench.states[i % 2], &run, out_error) &&
                (take_run(out_result, &run) || error_set(out_error, "out of memory"));

@@ -11,12 +11,12 @@ struct measurement {
     struct samples pass_ms[RENDERER_MAX_PASSES];
 };
 
-// Takes in the newest collected frame.
+// Adds the newest collected frame.
 bool measurement_add(struct measurement *measurement, const struct frame_statistics *statistics);
 void measurement_finish(struct measurement *measurement);
 
 // {"gl_renderer", "size", "frame_ms", "passes", "effects", "memory_bytes", "scene"} as the README
-// describes; a cJSON object that the caller deletes. NULL when memory ends.
+// describes: a cJSON object that the caller deletes. NULL when memory ends.
 struct cJSON;
 struct cJSON *measurement_json(const struct measurement *measurement,
                                const struct frame_statistics *statistics,

@@ -1,4 +1,4 @@
-// Image files, and the camera that sees a whole scene.
+// Image files.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,7 +84,7 @@ static void append_to_file(void *file, void *data, int size)
 
 static bool write_png(FILE *file, const struct frame_pixels *pixels)
 {
-    // Alpha says nothing: the image is opaque.
+    // Alpha has no meaning here: the image is opaque.
     uint8_t *rgb = malloc((size_t)pixels->width * pixels->height * 3);
     if (!rgb)
         return false;
@@ -100,7 +100,7 @@ static bool write_png(FILE *file, const struct frame_pixels *pixels)
     return done;
 }
 
-// Closes the file; what could not be written in full is removed.
+// Closes the file; removes it if it could not be written in full.
 static bool close_file(FILE *file, const char *path, bool done, struct error *out_error)
 {
     done = !ferror(file) && done;

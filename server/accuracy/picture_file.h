@@ -10,17 +10,18 @@
 bool picture_file_write(const char *path, const struct frame_pixels *pixels,
                         struct error *out_error);
 
-// 3 bytes a pixel, row 0 at the top, to a .png.
+// Writes 3 bytes a pixel, row 0 at the top, to a .png.
 bool picture_file_write_png(const char *path, uint32_t width, uint32_t height, const uint8_t *rgb,
                             struct error *out_error);
 
-// Pixels of FRAME_OUTPUT_LINEAR as an image of the caller's. False when out of memory.
+// Converts pixels of FRAME_OUTPUT_LINEAR to an image that the caller owns. False when out of
+// memory.
 bool picture_from_pixels(const struct frame_pixels *pixels, struct picture *out_picture);
 
-// Whether a name ends so, such as with ".png", in upper or lower case.
+// Whether a name ends in, for example, ".png", in upper or lower case.
 bool picture_file_has_extension(const char *path, const char *extension);
 
-// The output that a file of this name wants; false if the extension is none of the three.
+// The frame output that a file of this name needs; false if the extension is none of the three.
 bool picture_file_output(const char *path, enum frame_output *out_output);
 
 #endif

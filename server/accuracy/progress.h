@@ -1,4 +1,4 @@
-// How far measuring has come, and who is told.
+// Progress of measuring, and who is told of it.
 #ifndef VOXCAST_SERVER_ACCURACY_PROGRESS_H
 #define VOXCAST_SERVER_ACCURACY_PROGRESS_H
 
@@ -10,21 +10,22 @@ enum accuracy_stage {
     ACCURACY_MEASURING, // configurations: before the first, and after each
 };
 
-// How far a run has come.
+// Progress of a run.
 struct accuracy_progress {
     enum accuracy_stage stage;
-    uint32_t samples;                   // of the reference image, a pixel; 0 if it was loaded
-    double noise;                       // of the reference image; not finite while it is not known
-    uint32_t done, configuration_count; // configurations
+    uint32_t samples;                     // of the reference image, per pixel; 0 if it was loaded
+    double noise;                         // of the reference image; not finite until it is known
+    uint32_t done, configuration_count;   // configurations
     const struct configuration *measured; // the newest, in this run; NULL for none
-    const struct configuration *next;     // NULL at the end
+    const struct configuration *next;     // NULL after the last one
     double measured_s;                    // what `measured` took
-    double left_s;                        // of this stage; NaN while it is not known
+    double left_s;                        // of this stage; NaN until it is known
 };
 
-// Who is told how a run goes on, and may end it. Zero: nobody.
+// Receives the progress of a run, and may end it. All zero: nobody.
 struct accuracy_watch {
-    bool (*tell)(void *user, const struct accuracy_progress *progress); // false ends the run
+    bool (*tell)(void *user,
+                 const struct accuracy_progress *progress); // returns false to end the run
     void *user;
 };
 

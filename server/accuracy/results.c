@@ -43,7 +43,7 @@ static char *read_text(const char *path)
     return text;
 }
 
-// Whether both print the same. NULL is no text.
+// Whether both print the same text. NULL prints none.
 static bool same_text(const cJSON *a, const cJSON *b)
 {
     char *x = a ? cJSON_PrintUnformatted(a) : NULL, *y = b ? cJSON_PrintUnformatted(b) : NULL;
@@ -53,7 +53,7 @@ static bool same_text(const cJSON *a, const cJSON *b)
     return same;
 }
 
-// Time of a frame and error of the final image; false where one of them has no value.
+// Time of a frame and error of the final image; false if either has no value.
 static bool get_point(const cJSON *entry, enum image_metric metric, double *out_ms,
                       double *out_error)
 {
@@ -67,7 +67,7 @@ static bool get_point(const cJSON *entry, enum image_metric metric, double *out_
     return true;
 }
 
-// The smallest error of a final image; infinite without any.
+// The smallest error of a final image; infinite if there is none.
 static double smallest_error(const cJSON *configurations, const char *part,
                              enum image_metric metric)
 {
@@ -83,8 +83,8 @@ static double smallest_error(const cJSON *configurations, const char *part,
     return smallest;
 }
 
-// Says for each metric whether the reference image is so much better than the best configuration
-// that errors are not its own.
+// Says for each metric whether the reference image is noisier than a tenth of the smallest error:
+// then errors are partly its own.
 static void judge_noise(cJSON *results)
 {
     const cJSON *own = get(get(get(results, "setup"), "reference"), "error");
@@ -129,7 +129,7 @@ cJSON *results_open(const char *folder, cJSON *setup, uint32_t *out_kept)
     cJSON *results = cJSON_CreateObject();
     cJSON_AddItemToObject(results, "setup", setup);
     cJSON_AddItemToObject(results, "metrics", metric_list());
-    // Through text and back, as the former set-up has gone.
+    // Compared as text, since the former set-up exists only as text.
     char *printed = cJSON_PrintUnformatted(setup);
     cJSON *parsed = printed ? cJSON_Parse(printed) : NULL;
     cJSON *configurations = NULL;
@@ -247,7 +247,7 @@ static void print_csv_row(FILE *file, const cJSON *entry)
             preset ? preset : "");
     print_number(file, get(settings, "scale"));
     fputc(',', file);
-    // Values hold no commas but those of vectors, which no field of settings is.
+    // Only vectors hold commas, and no field of settings is one.
     cJSON_ArrayForEach(set, get(settings, "set"))
     {
         fprintf(file, "%s%s=%s", set->prev && set != get(settings, "set")->child ? " " : "",
@@ -271,7 +271,7 @@ static void print_csv_row(FILE *file, const cJSON *entry)
     fputc('\n', file);
 }
 
-// A file that is there whole or as it was before.
+// Writes a file completely, or leaves it as it was.
 struct safe_file {
     FILE *file;
     char path[4096], new_path[4096 + 8];
@@ -322,7 +322,7 @@ static bool write_csv(const cJSON *results, const char *folder, struct error *ou
     return close_file(&safe, true, out_error);
 }
 
-// The page's own files, from the source tree or from where they are installed.
+// The page's own files, from the source tree or from the installed folder.
 static bool copy_report_file(const char *folder, const char *name, struct error *out_error)
 {
     static const char *const sources[] = {VOXCAST_SOURCE_DIR "/web_client/report",

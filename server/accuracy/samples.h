@@ -15,7 +15,8 @@ struct samples {
 bool samples_add(struct samples *samples, double value);
 void samples_finish(struct samples *samples);
 
-// The value below which the share `quantile` of the samples lies (nearest rank); 0 without samples.
+// The value below which the fraction `quantile` of the samples lies (nearest rank); 0 without
+// samples.
 double samples_quantile(const struct samples *samples, double quantile);
 
 #endif

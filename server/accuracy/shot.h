@@ -7,13 +7,13 @@
 struct shot {
     struct scene *scene;
     struct renderer *renderer;
-    struct frame_params params; // with FRAME_OUTPUT_YCBCR; the caller sets another
+    struct frame_params params; // with FRAME_OUTPUT_YCBCR; the caller may set another output
 };
 
 void shot_close(struct shot *shot);
 
-// The view of a scene when none is asked for: its first camera, else one that frames its bounds
-// from the front and a little above.
+// The default view of a scene: its first camera, else one that frames the bounds from the front and
+// slightly above.
 void shot_default_camera(const struct scene *scene, float aspect, struct view_camera *out_camera);
 
 #endif

@@ -1,4 +1,4 @@
-// Sweeps of settings: those with a name, and those in files.
+// Sweeps of settings: the named ones, and those in files.
 #include <cjson/cJSON.h>
 #include <ctype.h>
 #include <errno.h>
@@ -42,7 +42,7 @@ static void add_presets(struct sweep *sweep)
         add_configuration(sweep, quality_names[i], (enum quality)i);
 }
 
-// What variations of one setting start from: rays would hide what cones and voxels do.
+// Variations of single settings start from this: rays would hide the effect of cones and voxels.
 static struct configuration *add_base(struct sweep *sweep, const char *name, const char *method)
 {
     struct configuration *configuration = add_configuration(sweep, name, QUALITY_HIGH);
@@ -63,7 +63,7 @@ static void add_variation(struct sweep *sweep, const char *method, const char *k
         add_set(configuration, key, value);
 }
 
-// Voxels and where cones start decide time and error most, so they are crossed.
+// Voxels and the start of cones determine time and error most, so all combinations are measured.
 static void add_crossed(struct sweep *sweep, enum gi_method method)
 {
     static const enum gather_mode final_gather_modes[] = {GATHER_CACHE, GATHER_HALF, GATHER_PIXEL};

@@ -1,4 +1,4 @@
-// Configurations that are measured: quality and settings each.
+// Configurations to measure: quality and settings of each.
 #ifndef VOXCAST_SERVER_ACCURACY_SWEEP_H
 #define VOXCAST_SERVER_ACCURACY_SWEEP_H
 
@@ -12,11 +12,11 @@
 
 struct cJSON;
 
-// One setting that is measured.
+// One configuration to measure.
 struct configuration {
-    char name[CONFIGURATION_NAME_SIZE]; // letters, digits, '-', '_' and '.': names its files
+    char name[CONFIGURATION_NAME_SIZE]; // letters, digits, '-', '_' and '.': part of file names
     enum quality quality;
-    double scale; // size it is rendered at over the size shown: 0.25 to 1, or 2
+    double scale; // rendered size over shown size: 0.25 to 1, or 2
     uint32_t set_count;
     struct {
         char key[CONFIGURATION_TEXT_SIZE], value[CONFIGURATION_TEXT_SIZE]; // a field of settings
@@ -30,10 +30,10 @@ struct sweep {
 
 // "quick" (the presets), "full" (methods, voxels, gather modes, cones, steps, bounces, levels and
 // scales, in turn), or a file: a JSON array of {"name", "preset", "scale", "set": {"KEY": VALUE}},
-// all but the name optional. False with a message that names configuration, key and range.
+// where all but the name is optional. False with a message that names configuration, key and range.
 bool sweep_load(const char *name, struct sweep *out_sweep, struct error *out_error);
 
-// Applies quality and sets; size and scale are the caller's.
+// Applies quality and settings. The caller applies size and scale.
 bool configuration_apply(const struct configuration *configuration, struct frame_params *params,
                          struct error *out_error);
 

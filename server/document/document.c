@@ -7,7 +7,7 @@
 
 #include <cjson/cJSON.h>
 
-// Things that are spread over the scene, gathered so that every field has one place.
+// What the scene keeps in several structs, collected so that every field has one offset.
 struct light_record {
     struct scene_light light;
     float position[3];
@@ -31,7 +31,7 @@ union record {
     struct view_camera camera;
 };
 
-// Where the table's records lie in the record of their group.
+// Where the table's records lie in the union.
 #define LIGHT_FIELD(name)           light.light.name
 #define LIGHT_PLACEMENT_FIELD(name) light.name
 #define MATERIAL_FIELD(name)        material.name
@@ -42,7 +42,7 @@ union record {
 #define VIEW_FIELD(name)            view.name
 #define CAMERA_FIELD(name)          camera.name
 
-// Where each parameter's field lies in there, in the order of the table.
+// The offset of each parameter's field, in the order of the table.
 #define OFFSET(record_name, name) offsetof(union record, record_name##_FIELD(name)),
 static const size_t offsets[] = {
 #define PARAMETER(record, name, ...) OFFSET(record, name)
@@ -50,7 +50,7 @@ static const size_t offsets[] = {
 #undef PARAMETER
 };
 
-// Its type there is the one that read_field() and write_field() take it for.
+// Checks that the field has the type that read_field() and write_field() assume.
 #define CHECK_TYPE(record_name, name, type)                                                        \
     _Static_assert(_Generic(&((union record *)0)->record_name##_FIELD(name),                       \
                             PARAMETER_ELEMENT_##type(*) PARAMETER_EXTENT_##type                    \
@@ -295,7 +295,7 @@ static void normalize(struct parameter_value *value)
         value->numbers[i] /= length;
 }
 
-// What no single value can tell.
+// Checks that need more than a single value.
 static bool check_record(enum parameter_group group, const union record *record,
                          struct rpc_error *error)
 {

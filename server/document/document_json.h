@@ -1,5 +1,5 @@
-// The document as JSON, as PROTOCOL.md defines it. Runs where the document lives: the render
-// thread. Each returns a tree that the caller owns.
+// The document as JSON, as PROTOCOL.md defines it. Runs on the render thread, which owns the
+// document. The caller owns each result.
 #ifndef VOXCAST_SERVER_DOCUMENT_DOCUMENT_JSON_H
 #define VOXCAST_SERVER_DOCUMENT_DOCUMENT_JSON_H
 
@@ -7,7 +7,7 @@
 
 #include "server/document/document.h"
 
-// Adds every parameter of a group to `object`, as set now.
+// Adds every parameter of a group to `object`, with its present value.
 void document_json_add_group(cJSON *object, const struct document *document,
                              enum parameter_group group, uint32_t id);
 

@@ -27,7 +27,7 @@ static const char *item_name(const struct scene *scene, enum parameter_group gro
     }
 }
 
-// A number below the count, else the first item of that name.
+// A number below the count, else the index of the first item of that name.
 static bool find_item(const struct document *document, enum parameter_group group, const char *text,
                       size_t length, uint32_t *out_id)
 {

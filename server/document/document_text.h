@@ -1,4 +1,4 @@
-// Values of the document given as text, as the command line has them.
+// Values of the document given as text, as on the command line.
 #ifndef VOXCAST_SERVER_DOCUMENT_DOCUMENT_TEXT_H
 #define VOXCAST_SERVER_DOCUMENT_DOCUMENT_TEXT_H
 

@@ -47,7 +47,7 @@ static void drop_oldest(struct edit_history *history)
     history->position = history->count;
 }
 
-// Those before the newest step's own.
+// Drops the steps that lie before the newest one.
 static uint64_t image_bytes(const struct edit_history *history)
 {
     uint64_t bytes = 0;
@@ -58,7 +58,7 @@ static uint64_t image_bytes(const struct edit_history *history)
     return bytes;
 }
 
-// Takes over `step`; NULL, from a failed allocation, costs an undo step.
+// Takes over `step`. NULL, from a failed allocation, loses an undo step.
 static void record(struct edit_history *history, struct edit_step *step)
 {
     if (!step)
@@ -79,7 +79,7 @@ static void record(struct edit_history *history, struct edit_step *step)
         drop_oldest(history);
 }
 
-// All values of a light, so that it can come back as it was.
+// All values of a light, so that undo can bring it back.
 static void capture_light(const struct document *document, struct edit_step *step,
                           struct parameter_value values[COMMAND_MAX_VALUES])
 {
@@ -118,7 +118,7 @@ static bool is_below(const struct scene *scene, uint32_t node, uint32_t ancestor
     return node == ancestor;
 }
 
-// The new places of the lights below a node that moved.
+// The new positions of the lights below a node that moved.
 static void add_moved_lights(cJSON *edit, const struct scene *scene, uint32_t node)
 {
     cJSON *lights = NULL;
@@ -206,8 +206,8 @@ static bool is_set(const struct document *document, uint32_t id,
            strcmp(now.text, value->text) == 0;
 }
 
-// Brings a removed light back under its id, with the values of the command: another one may have
-// been in its place. What is as it was is left alone, since setting places rounds.
+// Restores a removed light under its id with the values of the command: another light may have used
+// the id since. Values that are equal already are left alone, since setting a placement rounds.
 static bool restore_light(const struct document *document, struct command *command,
                           struct rpc_error *error)
 {
@@ -232,7 +232,7 @@ static cJSON *add_light(const struct document *document, struct command *command
         rpc_error_set(error, RPC_NOT_READY, "no scene is shown yet");
         return NULL;
     }
-    uint32_t id = command->target; // of a removed light, when an undo or redo brings it back
+    uint32_t id = command->target; // of a removed light that an undo or redo brings back
     if (id != COMMAND_NO_TARGET) {
         if (!restore_light(document, command, error))
             return NULL;
@@ -361,7 +361,7 @@ static bool undo_or_redo(const struct document *document, struct edit_history *h
         cJSON_AddNullToObject(result, "method");
         return true;
     }
-    // A step that cannot be replayed, because another client removed what it changed, is passed.
+    // A step that cannot be replayed, because another client removed what it changed, is skipped.
     uint32_t step = backwards ? --history->position : history->position++;
     struct edit_step *it = history->steps[step];
     it->open = false;

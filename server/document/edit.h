@@ -1,6 +1,6 @@
-// Applies edits to the document, tells them to the other clients, and takes them back.
+// Applies edits to the document, reports them to the other clients, and undoes them.
 //
-// Runs where the document lives: the render thread.
+// Runs on the render thread, which owns the document.
 #ifndef VOXCAST_SERVER_DOCUMENT_EDIT_H
 #define VOXCAST_SERVER_DOCUMENT_EDIT_H
 
@@ -10,22 +10,23 @@
 #include "server/document/document.h"
 
 #define EDIT_HISTORY_STEPS 64u
-// Images of environments that the steps of one client keep for undo. Beyond, the oldest steps go;
-// the newest stays.
+// Bound on the environment images that one client's undo steps keep. Beyond it the oldest steps go;
+// the newest one stays.
 #define EDIT_HISTORY_IMAGE_BYTES (512ull << 20)
 
 // One undo step: what an edit changed.
 struct edit_step {
     enum method method;
     uint32_t target;
-    bool open; // the newest edit in it was transient: the next of the same fields joins it
+    bool open; // the newest edit in it was transient: the next one of the same fields joins it
     uint32_t value_count;
     struct parameter_value before[COMMAND_MAX_VALUES];
     struct parameter_value after[COMMAND_MAX_VALUES];
-    struct environment_image *image_before, *image_after; // of environment.load; a reference each
+    struct environment_image *image_before,
+        *image_after; // of environment.load; holds a reference to each
 };
 
-// One client's edits: steps below `position` can be undone, the others redone. Zero is empty.
+// One client's edits: steps below `position` can be undone, the others redone. All zero is empty.
 struct edit_history {
     uint32_t count;
     uint32_t position;
@@ -35,15 +36,15 @@ struct edit_history {
 void edit_history_clear(struct edit_history *history);
 
 // Applies a command with METHOD_EDITS other than scene.load and environment.load. On success
-// `out_edit` is the member of `edits` that PROTOCOL.md describes, without revision, the caller's;
-// it is NULL if there was nothing to undo or redo. What the reply holds besides is added to
-// `result`.
+// `out_edit` is the member of `edits` that PROTOCOL.md describes, without the revision; the caller
+// owns it. It is NULL if there was nothing to undo or redo. Further members of the reply are added
+// to `result`.
 bool edit_apply(const struct document *document, struct edit_history *history,
                 struct command *command, cJSON *result, cJSON **out_edit,
                 struct rpc_error *out_error);
 
-// Shows an image as the environment, keeping references of its own. Returns the edit as above. The
-// history may be NULL: then nobody can take it back.
+// Sets an image as the environment and keeps references of its own. Returns the edit as above. The
+// history may be NULL: then nobody can undo it.
 cJSON *edit_load_environment(const struct document *document, struct edit_history *history,
                              struct environment_image *image);
 

@@ -1,4 +1,4 @@
-// The newest edits, so that a client that comes back can catch up.
+// The newest edits, so that a client that reconnects can catch up.
 #ifndef VOXCAST_SERVER_DOCUMENT_EDIT_LOG_H
 #define VOXCAST_SERVER_DOCUMENT_EDIT_LOG_H
 
@@ -7,7 +7,7 @@
 
 #define EDIT_LOG_ENTRIES 1024u
 
-// The newest edits, so that a client can catch up. Zero is empty.
+// The newest edits, so that a client can catch up. All zero is empty.
 struct edit_log {
     uint32_t count;
     uint32_t first;
@@ -21,7 +21,8 @@ struct edit_log {
 void edit_log_add(struct edit_log *log, uint64_t revision, cJSON *edit);
 void edit_log_clear(struct edit_log *log);
 
-// The edits after `since` up to `newest`, the caller's; NULL if the log does not reach back so far.
+// The edits after `since` up to `newest`, owned by the caller; NULL if the log does not reach back
+// that far.
 cJSON *edit_log_since(const struct edit_log *log, uint64_t since, uint64_t newest);
 
 #endif

@@ -14,12 +14,12 @@ struct thumbnail {
     char *base64; // owned
 };
 
-// Averages up to 8 x 8 texels for each pixel, so that the cost is bounded for any image. False
-// when out of memory.
+// Averages up to 8 x 8 texels for each pixel, so that the cost is bounded for any image. False when
+// out of memory.
 bool thumbnail_create(const struct image *image, struct thumbnail *out_thumbnail);
 void thumbnail_finish(struct thumbnail *thumbnail);
 
-// RFC 4648 text from malloc, the caller's; NULL when out of memory.
+// RFC 4648 text from malloc, owned by the caller; NULL when out of memory.
 char *base64_encode(const uint8_t *bytes, size_t count);
 
 #endif

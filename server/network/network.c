@@ -25,7 +25,7 @@ static const struct lws_protocols protocols[] = {
     {0},
 };
 
-// Silence for a minute is probed; a client that does not answer is gone.
+// A client that is silent for a minute is probed, and dropped if it does not answer.
 static const lws_retry_bo_t probing = {.secs_since_valid_ping = 60, .secs_since_valid_hangup = 80};
 
 static void log_library(int level, const char *line)
@@ -36,7 +36,7 @@ static void log_library(int level, const char *line)
 
 static_assert(LWS_PRE <= FRAME_STREAM_PREFIX_BYTES, "frames leave room for the library's header");
 
-// Why an address and port cannot be bound, as errno tells; 0 if they can, or the address is the
+// Why an address and port cannot be bound, as an errno; 0 if they can, or if the address is the
 // name of an interface.
 static int find_bind_error(const char *address, uint32_t port)
 {
@@ -95,8 +95,8 @@ struct network *network_create(const struct network_params *params, struct error
     network->params = *params;
     if (params->web_dir[0] && !realpath(params->web_dir, network->web_root))
         log_write(LOG_WARN, "web_client_missing folder=\"%s\"", params->web_dir);
-    lws_set_log_level(0, log_library); // what goes wrong while it starts is explained below
-    // With IPv6 enabled the library takes an IPv4 address for the whole machine.
+    lws_set_log_level(0, log_library); // errors while it starts are explained below
+    // With IPv6 enabled, the library takes an IPv4 address for all addresses of the machine.
     bool ipv4 = !strchr(params->listen, ':');
     struct lws_context_creation_info info = {
         .port = (int)params->port,
@@ -159,8 +159,8 @@ static void *run(void *user)
         lws_service(network->context, 0);
         deliver_all(network);
     }
-    // A last turn for the sessions to hear why they end. The library sleeps until something
-    // happens; each session's timer or timeout sees to it that something does.
+    // A last turn of the loop, in which sessions learn why they end. The library sleeps until
+    // something happens; each session's timer or timeout wakes it.
     deliver_all(network);
     uint64_t deadline = clock_now_us() + DRAIN_US;
     while (network->sessions && clock_now_us() < deadline)

@@ -1,6 +1,6 @@
-// The network loop: owns sockets and sessions, serves HTTP and WebSocket on one port.
+// The network loop: owns sockets and sessions, and serves HTTP and WebSocket on one port.
 //
-// It parses and checks what comes and posts it to the render thread; it never waits for anyone.
+// It checks and parses messages and posts them to the render thread; it never waits for anyone.
 #ifndef VOXCAST_SERVER_NETWORK_NETWORK_H
 #define VOXCAST_SERVER_NETWORK_NETWORK_H
 
@@ -16,20 +16,20 @@
 
 struct network;
 
-// Pointers outlive the network.
+// Pointers must outlive the network.
 struct network_params {
     const char *listen;
     uint32_t port;
     const char *web_dir;
-    const char *allow_origin; // origins with commas between
-    const char *token;        // "" for none: who does not bring one is an editor
+    const char *allow_origin; // origins, separated by commas
+    const char *token;        // "" for none: then whoever brings none is an editor
     const char *viewer_token; // "" for none
     uint32_t message_bytes;
-    uint32_t queue_bytes; // of texts that may wait for one client
+    uint32_t queue_bytes; // limit of texts that wait for one client
     uint32_t message_rate;
     struct mailbox *mailbox;
     struct frame_stream *stream;
-    struct accuracy_service *accuracy; // whose files are served
+    struct accuracy_service *accuracy; // its files are served
 };
 
 // Binds the port. NULL with a message that names the address.
@@ -38,15 +38,15 @@ struct network *network_create(const struct network_params *params, struct error
 // The port in use.
 uint32_t network_get_port(const struct network *network);
 
-// Starts the thread that serves, taking messages from `outbox`; `render` answers /readyz. False if
+// Starts the serving thread, which takes messages from `outbox`. `render` answers /readyz. False if
 // the thread cannot start.
 bool network_start(struct network *network, struct outbox *outbox, struct render_thread *render);
 
-// Makes the loop look at outbox and frames. Any thread; `user` is the network.
+// Makes the loop look at the outbox and at frames. Any thread; `user` is the network.
 void network_wake(void *user);
 
-// Tells all clients that the server goes away, stops the thread and joins it. A client that does
-// not answer holds this up for at most a second.
+// Tells all clients that the server goes away, then stops and joins the thread. A client that does
+// not answer delays this by a second at most.
 void network_stop(struct network *network);
 
 void network_destroy(struct network **network);

@@ -1,5 +1,5 @@
-// HTTP: the web client's files and the endpoints for operators. Every connection serves one
-// request and is closed: see network_check_upgrade() for why none is kept alive.
+// HTTP: the web client's files and the endpoints for operators. Every connection serves one request
+// and is closed: network_check_upgrade() says why none is kept alive.
 #include "server/network/network_internal.h"
 
 #include <limits.h>
@@ -18,7 +18,7 @@
     "wss:; object-src 'none'; base-uri 'none'; frame-ancestors 'none'\r\n"
 
 static const char security_headers[] = "cache-control: no-cache\r\n" SECURITY_HEADERS;
-// Of files that are written again and again, and that not everybody may see.
+// For files that are rewritten again and again, and that not everybody may see.
 static const char measured_headers[] = "cache-control: no-store\r\n" SECURITY_HEADERS;
 
 static const char *mime_type(const char *path)
@@ -48,7 +48,8 @@ static const char *mime_type(const char *path)
     return NULL;
 }
 
-// Sends a small answer whole. Returns what the callback returns: the connection is closed.
+// Sends a small answer at once. Returns what the callback must return so that the connection is
+// closed.
 static int answer(struct lws *wsi, unsigned int status, const char *type, const char *body)
 {
     unsigned char buffer[LWS_PRE + 8192];
@@ -114,8 +115,8 @@ static int answer_metrics(struct network *network, struct lws *wsi)
     return answer(wsi, HTTP_STATUS_OK, "text/plain; version=0.0.4", body);
 }
 
-// The file of a URL below the web client's folder; false if there is none, or a link or ".." leads
-// out of it.
+// The file of a URL below the web client's folder; false if there is none, or if a link or ".."
+// leads out of it.
 static bool find_file(const struct network *network, const char *url, char *out_path)
 {
     char joined[PATH_MAX];
@@ -148,7 +149,7 @@ static int serve(struct network *network, struct lws *wsi, const char *url)
         return answer(wsi, HTTP_STATUS_NOT_FOUND, "text/plain", "not found\n");
     }
     int result = lws_serve_http_file(wsi, path, mime_type(path), headers, headers_length);
-    // Positive: sent whole already. Zero: LWS_CALLBACK_HTTP_FILE_COMPLETION will come.
+    // Positive: sent completely. Zero: LWS_CALLBACK_HTTP_FILE_COMPLETION will follow.
     return result == 0 ? 0 : -1;
 }
 

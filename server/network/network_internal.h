@@ -24,7 +24,7 @@ enum close_code {
     CLOSE_TOO_MANY = 4429,
 };
 
-// A text to send; shared between sessions when it goes to all.
+// A text to send; sessions share it when it goes to all clients.
 struct text {
     uint32_t references;
     size_t length;
@@ -45,17 +45,17 @@ struct session {
     struct session *next;
     uint32_t slot;
     uint32_t client_id;
-    enum role role; // ROLE_NONE until a token came, if one is wanted
+    enum role role; // ROLE_NONE until a token came, if one is required
     bool said_hello;
-    char *message; // being put together from fragments; owned
+    char *message; // assembled from fragments; owned
     size_t message_length;
-    double tokens; // of the rate limit
+    double tokens; // of the rate limiter
     uint64_t tokens_at_us;
     uint32_t rate_errors;
     struct text_link *first, *last; // to send; owned
     size_t queued_bytes;
     int close_code; // 0: stays open
-    bool close_due; // the close message may go out
+    bool close_due; // the close message may be sent
     const char *close_reason;
 };
 
@@ -68,7 +68,7 @@ struct network {
     char web_root[4096]; // canonical; "" if there is none
     pthread_t thread;
     bool started;
-    atomic_bool draining; // no new connections; sessions are told to go
+    atomic_bool draining; // no new connections; sessions are told that the server goes away
     atomic_bool stop;
     struct session *sessions;
 };
@@ -76,7 +76,7 @@ struct network {
 // network_session.c: callbacks of the protocol voxcast.v1.
 int network_session_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
                              void *in, size_t length);
-void session_send(struct session *session, struct text *text); // keeps a reference of its own
+void session_send(struct session *session, struct text *text); // takes a reference of its own
 void session_close(struct session *session, int code, const char *reason);
 
 struct text *text_create(const char *content); // one reference; NULL when out of memory
@@ -86,15 +86,15 @@ void text_release(struct text *text);          // NULL is fine
 int network_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                           size_t length);
 
-// network_upgrade.c: looks a request to become a WebSocket over. False if it was refused and
+// network_upgrade.c: checks a request for an upgrade to WebSocket. False if it was refused and
 // answered: the caller hangs up.
 bool network_check_upgrade(struct network *network, struct lws *wsi);
 
-// The role that a token gives; ROLE_NONE for a wrong one. In time that does not depend on where it
+// The role that a token gives; ROLE_NONE for a wrong one. Takes the same time wherever the token
 // differs.
 enum role network_check_token(const struct network *network, const char *token);
 
-// Copies the value of a query's argument, decoded; false if it is not there or does not fit.
+// Copies the decoded value of a query argument; false if it is missing or does not fit.
 bool network_get_query(struct lws *wsi, const char *name, char *out, size_t size);
 
 #endif

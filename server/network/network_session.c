@@ -1,4 +1,4 @@
-// One WebSocket session: puts messages together, holds limits, posts commands, sends answers.
+// One WebSocket session: assembles messages, enforces limits, posts commands, sends replies.
 #include "server/network/network_internal.h"
 
 #include <stdlib.h>
@@ -35,10 +35,10 @@ void session_close(struct session *session, int code, const char *reason)
               reason);
     session->close_code = code;
     session->close_reason = reason;
-    // What is on its way is read and thrown away first: the library resets a connection that brings
-    // more after the close message, and the client would not learn the reason.
+    // Incoming data is read and discarded before closing: the library resets a connection that
+    // receives more after the close message, and the client would not learn the reason.
     lws_set_timer_usecs(session->wsi, CLOSE_DELAY_US);
-    // A client that does not read never gets there.
+    // More than a client that reads ever reaches.
     lws_set_timeout(session->wsi, PENDING_TIMEOUT_CLOSE_SEND, 5);
 }
 
@@ -132,7 +132,7 @@ static void refuse_by_rate(struct session *session)
         session_close(session, CLOSE_TOO_MANY, "too many messages");
 }
 
-// Decides whether the session may run the command; settles its role at session.hello.
+// Decides whether the session may run the command; fixes its role at session.hello.
 static bool check_permission(struct session *session, const struct command *command,
                              struct rpc_error *error)
 {
@@ -156,7 +156,7 @@ static bool check_permission(struct session *session, const struct command *comm
 static void post(struct session *session, struct command *command)
 {
     struct rpc_id superseded;
-    // Once posted, the command is the render thread's.
+    // Once posted, the command belongs to the render thread.
     bool has_edit_id = command->has_edit_id;
     uint64_t edit_id = command->edit_id;
     switch (mailbox_post(session->network->params.mailbox, command, &superseded)) {
@@ -215,7 +215,7 @@ static void handle_message(struct session *session, const char *message, size_t 
     }
 }
 
-// Appends a fragment; a whole message is handled.
+// Appends a fragment; handles the message when it is complete.
 static void receive(struct session *session, const void *bytes, size_t length)
 {
     if (session->close_code)
@@ -295,7 +295,7 @@ static void finish_session(struct session *session)
     session->network = NULL;
 }
 
-// Sends one message: texts first, they are small and carry the answers.
+// Sends one message. Texts go first: they are small and carry the replies.
 static int write_next(struct session *session)
 {
     struct frame_stream *stream = session->network->params.stream;

@@ -1,4 +1,5 @@
-// Who may open a WebSocket: the kind of upgrade, the origin, the token, the number of clients.
+// Who may open a WebSocket: checks the kind of upgrade, the origin, the token and the number of
+// clients.
 #include "server/network/network_internal.h"
 
 #include <stdio.h>
@@ -12,7 +13,7 @@ static bool tokens_equal(const char *expected, const char *given)
     size_t length = strlen(given);
     size_t expected_length = strlen(expected);
     unsigned char difference = length != expected_length;
-    // Reads all of `expected` whatever `given` is.
+    // Reads all of `expected` whatever `given` is, so that the time tells nothing.
     for (size_t i = 0; i < expected_length; i++)
         difference |= (unsigned char)(expected[i] ^ given[length > 0 ? i % length : 0]);
     return difference == 0;
@@ -44,7 +45,7 @@ bool network_get_query(struct lws *wsi, const char *name, char *out, size_t size
     return false;
 }
 
-// Whether `origin` stands in a list with commas between.
+// Whether `origin` is in a list separated by commas.
 static bool is_listed(const char *list, const char *origin)
 {
     size_t length = strlen(origin);
@@ -58,7 +59,7 @@ static bool is_listed(const char *list, const char *origin)
     return false;
 }
 
-// The page's origin must be the server it came from, or be allowed. A program sends none.
+// The page's origin must be the server itself or an allowed one. A program sends no origin.
 static bool origin_is_allowed(const struct network *network, struct lws *wsi)
 {
     if (lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) == 0)
@@ -91,8 +92,9 @@ static bool refuse(struct lws *wsi, unsigned int status, const char *reason)
 bool network_check_upgrade(struct network *network, struct lws *wsi)
 {
     char kind[32];
-    // The library answers unknown kinds itself, and on a connection that is kept alive calls here
-    // nevertheless, with headers that it has let go of: then none are found, and nothing is sent.
+    // The library answers unknown kinds of upgrade itself. On a kept-alive connection it calls here
+    // nevertheless, with headers that it has freed already: then none are found and nothing is
+    // sent.
     if (lws_hdr_copy(wsi, kind, sizeof(kind), WSI_TOKEN_UPGRADE) <= 0 ||
         strcasecmp(kind, "websocket") != 0)
         return false;
