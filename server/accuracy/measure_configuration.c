@@ -1,5 +1,5 @@
-// One configuration of a sweep: its times, its images, and how far these are from the reference
-// image.
+// Measures one configuration of a sweep: its times, its images, and how far these are from the
+// reference image.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +19,7 @@
 #define STRIP_PICTURES 4u
 #define STRIP_GAP      4u
 
-// What is gathered about one configuration.
+// Work on one configuration.
 struct configuration_work {
     const struct accuracy *accuracy;
     const struct configuration *configuration;
@@ -67,7 +67,7 @@ static void resample(const struct picture *source, struct picture *target)
         }
 }
 
-// Pixels as an image of the reference image's size.
+// Converts pixels to an image of the reference image's size.
 static bool take_picture(const struct configuration_work *work, const struct frame_pixels *pixels,
                          struct picture *out_picture)
 {
@@ -95,7 +95,7 @@ static double sum(const struct samples *samples)
     return total;
 }
 
-// Frames of a moving camera: time, time per pass, memory. Compiles the shaders, too.
+// Measures a moving camera: time of frames and passes, memory. Also compiles the shaders.
 static bool measure_frames(struct configuration_work *work, struct error *out_error)
 {
     const struct shot *shot = &work->accuracy->shot;
@@ -125,14 +125,14 @@ static bool measure_frames(struct configuration_work *work, struct error *out_er
     return done;
 }
 
-// Uploads the scene anew, so that nothing is known of its light.
+// Uploads the scene anew, so that no light of it is cached.
 static bool forget_light(const struct accuracy *accuracy, struct error *out_error)
 {
     return renderer_set_scene(accuracy->shot.renderer, NULL, out_error) &&
            renderer_set_scene(accuracy->shot.renderer, accuracy->shot.scene, out_error);
 }
 
-// The first image of a scene that has just been uploaded, and the one that is final.
+// The first image of a scene that has just been uploaded, and the converged one.
 static bool draw_pictures(struct configuration_work *work, struct error *out_error)
 {
     struct renderer *renderer = work->accuracy->shot.renderer;
@@ -165,7 +165,7 @@ static bool draw_pictures(struct configuration_work *work, struct error *out_err
     return done || error_set(out_error, "out of memory");
 }
 
-// Direct light alone, by the same settings.
+// Direct light alone, with the same settings.
 static bool draw_direct(struct configuration_work *work, struct error *out_error)
 {
     struct frame_params params = work->params;
@@ -195,7 +195,7 @@ static bool measure_edits(struct configuration_work *work, struct error *out_err
     if (accuracy->edits == 0)
         return true;
     cJSON *edit = cJSON_AddObjectToObject(work->entry, "edit");
-    // A scene may have nothing to edit, and a method may not settle: both are results.
+    // A scene may have nothing to edit, and a method may not converge: both are results.
     if (!edit_measure(&params, &result, out_error))
         cJSON_AddStringToObject(edit, "error", out_error->message);
     else
@@ -218,7 +218,7 @@ static void add_metrics(cJSON *object, const char *name, const struct image_metr
         cJSON_AddNumberToObject(json, image_metric_infos[i].name, metrics->values[i]);
 }
 
-// What is left of an image without its direct light, where nothing shines by itself.
+// An image without its direct light, black where surfaces emit.
 static bool take_indirect(const struct accuracy *accuracy, const struct picture *picture,
                           const struct picture *direct, struct picture *out_indirect)
 {
@@ -265,7 +265,7 @@ static bool judge_picture(struct configuration_work *work, const char *state,
                           out_error);
 }
 
-// Writes NAME-SUFFIX.png into the folder and notes it in the entry.
+// Writes NAME-SUFFIX.png into the folder and records it in the entry.
 static bool write_png(struct configuration_work *work, cJSON *pictures, const char *suffix,
                       uint32_t width, uint32_t height, const uint8_t *rgb, struct error *out_error)
 {
@@ -276,7 +276,8 @@ static bool write_png(struct configuration_work *work, cJSON *pictures, const ch
     return picture_file_write_png(path, width, height, rgb, out_error);
 }
 
-// The converged image, the heat map, and a strip of truth, cold, converged and heat map.
+// Writes the converged image, the heat map, and a strip of reference image, first image, converged
+// image and heat map.
 static bool write_pictures(struct configuration_work *work, struct error *out_error)
 {
     const struct picture *reference_image =
@@ -330,11 +331,11 @@ static bool measure(struct configuration_work *work, struct error *out_error)
     work->view = renderer_view_create(accuracy->shot.renderer);
     if (!work->view)
         return error_set(out_error, "out of memory");
-    // Edits go on from the image that has settled.
+    // Edits start from the converged image.
     bool done = draw_pictures(work, out_error) && draw_direct(work, out_error) &&
                 measure_edits(work, out_error);
     renderer_view_destroy(accuracy->shot.renderer, &work->view);
-    // An edit that was cut short looks like one that cannot be measured.
+    // An interrupted edit looks like one that cannot be measured.
     done = done &&
            (renderer_admit_frame(accuracy->shot.renderer) ||
             error_set(out_error, "stopped while rung %s was measured", work->configuration->name));

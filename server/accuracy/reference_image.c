@@ -1,5 +1,5 @@
-// The image that configurations are compared with: from a file, or traced and kept for the next
-// run.
+// The image that configurations are compared with: loaded from a file, or traced and kept for the
+// next run.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -14,11 +14,11 @@
 #define SAMPLES_AT_ONCE  8u
 #define PATH_SIZE        4096u
 #define SECONDS_PER_NEWS 0.5
-// Light of the sky is gathered by cones, so that it is indirect light here.
+// Cones gather the sky's light, so it counts as indirect light here.
 #define LIGHT_LAYERS (REFERENCE_LAYER(REFERENCE_EMISSION) | REFERENCE_LAYER(REFERENCE_DIRECT))
 #define MAX_SAMPLES  (1u << 20)
 
-// What has been traced, as reference.json has it: equal text means an equal image.
+// What was traced, as reference.json has it: equal text means an equal image.
 static char *describe(const struct reference_image_params *params)
 {
     cJSON *json = cJSON_CreateObject();
@@ -57,7 +57,7 @@ static void name_file(const struct reference_image_params *params, const char *n
     snprintf(out_path, PATH_SIZE, "%s/%s", params->folder, name);
 }
 
-// The images that an earlier run has kept, if they are the same.
+// Loads the images that an earlier run has kept, if they are the same ones.
 static bool load_kept(const struct reference_image_params *params, const char *description,
                       struct reference_image *out_reference)
 {
@@ -104,7 +104,7 @@ static bool keep(const struct reference_image_params *params, const char *descri
     return done || error_set(out_error, "cannot write \"%s\"", path);
 }
 
-// Adds a share of the light of some layers.
+// Adds a fraction of the light of some layers.
 static bool add_layers(struct reference *reference, uint32_t layers, float fraction,
                        struct picture *picture)
 {
@@ -119,7 +119,7 @@ static bool add_layers(struct reference *reference, uint32_t layers, float fract
     return true;
 }
 
-// Both halves of the samples, each a reference with random numbers of its own.
+// Both halves of the samples: two references with random numbers of their own.
 struct halves {
     struct reference *references[2];
 };
@@ -182,7 +182,7 @@ static bool tell(const struct trace_state *state, enum accuracy_stage stage, dou
                                                     });
 }
 
-// Adds samples to one half. False if the watch ends it.
+// Adds samples to one half. False if the watch ends the run.
 static bool add_samples(struct trace_state *state, struct reference *half, uint32_t count,
                         uint32_t wanted)
 {
@@ -198,7 +198,7 @@ static bool add_samples(struct trace_state *state, struct reference *half, uint3
 }
 
 // Traces until there are enough samples, the noise is low enough, or time is up. False if the watch
-// ends it.
+// ends the run.
 static bool trace(const struct reference_image_params *params, const struct halves *halves,
                   double *out_noise)
 {
@@ -282,7 +282,7 @@ static bool load_given(const struct reference_image_params *params,
                          &reference_image->pictures[REFERENCE_IMAGE_DIRECT], out_error));
 }
 
-// As trace_reference(), but a run that has kept its images is not repeated.
+// As trace_reference(), but reuses the images of an earlier run.
 static bool find_or_trace(const struct reference_image_params *params,
                           struct reference_image *reference_image, struct error *out_error)
 {

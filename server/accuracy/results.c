@@ -84,7 +84,8 @@ static double smallest_error(const cJSON *configurations, const char *part,
 }
 
 // Says for each metric whether the reference image is noisier than a tenth of the smallest error:
-// then errors are partly its own.
+// Says for each metric whether the reference image is accurate enough: whether its own error is
+// small against the smallest error of a configuration.
 static void judge_noise(cJSON *results)
 {
     const cJSON *own = get(get(get(results, "setup"), "reference"), "error");
@@ -129,7 +130,7 @@ cJSON *results_open(const char *folder, cJSON *setup, uint32_t *out_kept)
     cJSON *results = cJSON_CreateObject();
     cJSON_AddItemToObject(results, "setup", setup);
     cJSON_AddItemToObject(results, "metrics", metric_list());
-    // Compared as text, since the former set-up exists only as text.
+    // Printed and parsed again, so that both set-ups have gone through text.
     char *printed = cJSON_PrintUnformatted(setup);
     cJSON *parsed = printed ? cJSON_Parse(printed) : NULL;
     cJSON *configurations = NULL;
@@ -247,7 +248,7 @@ static void print_csv_row(FILE *file, const cJSON *entry)
             preset ? preset : "");
     print_number(file, get(settings, "scale"));
     fputc(',', file);
-    // Only vectors hold commas, and no field of settings is one.
+    // Only vectors hold commas, and no field of settings is a vector.
     cJSON_ArrayForEach(set, get(settings, "set"))
     {
         fprintf(file, "%s%s=%s", set->prev && set != get(settings, "set")->child ? " " : "",

@@ -47,7 +47,7 @@ static void drop_oldest(struct edit_history *history)
     history->position = history->count;
 }
 
-// Drops the steps that lie before the newest one.
+// Bytes of the images that the steps keep, without the one that the newest step has set.
 static uint64_t image_bytes(const struct edit_history *history)
 {
     uint64_t bytes = 0;

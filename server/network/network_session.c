@@ -38,7 +38,7 @@ void session_close(struct session *session, int code, const char *reason)
     // Incoming data is read and discarded before closing: the library resets a connection that
     // receives more after the close message, and the client would not learn the reason.
     lws_set_timer_usecs(session->wsi, CLOSE_DELAY_US);
-    // More than a client that reads ever reaches.
+    // Ends clients that do not read.
     lws_set_timeout(session->wsi, PENDING_TIMEOUT_CLOSE_SEND, 5);
 }
 

@@ -14,12 +14,12 @@
 #include "protocol/rpc.h"
 #include "server/render/accuracy_session.h"
 
-// As voxcast accuracy has them unless asked for others.
+// The defaults of voxcast accuracy.
 #define MEASURED_FRAMES 12
 #define MEASURED_EDITS  1
-// Below the others, yet not so low that what it holds in the driver is held for long.
+// Below the others, but high enough that locks in the driver are not held for long.
 #define NICE 10
-// A renderer without work is kept for so long: its shaders are compiled.
+// How long a renderer without work is kept, for its compiled shaders.
 #define KEPT_SECONDS 60
 
 #define URL_PREFIX "/accuracy/"
@@ -28,12 +28,12 @@ struct accuracy_service {
     struct accuracy_service_params params;
     pthread_t thread;
     bool started;
-    struct renderer *renderer; // the thread's; NULL without work
+    struct renderer *renderer; // the thread's; NULL while there is no work
 
     pthread_mutex_t mutex;
     pthread_cond_t changed; // anything below, or a session's `cancelled`
     bool stop, idle;
-    struct accuracy_session *sessions; // one a client, and those abandoned; oldest first
+    struct accuracy_session *sessions; // one per client, and abandoned ones; oldest first
     struct accuracy_session *running;
 };
 
@@ -61,7 +61,7 @@ static void post(struct accuracy_service *service, const struct accuracy_session
                 rpc_write_notification("accuracy.progress", params));
 }
 
-// The client's session, unless it has been replaced. Under the mutex.
+// The client's session, unless it has been replaced. The mutex must be held.
 static struct accuracy_session *find(const struct accuracy_service *service, uint32_t client_id)
 {
     struct accuracy_session *session = service->sessions;
@@ -70,7 +70,7 @@ static struct accuracy_session *find(const struct accuracy_service *service, uin
     return session;
 }
 
-// Under the mutex.
+// The mutex must be held.
 static void unlink_session(struct accuracy_service *service, const struct accuracy_session *session)
 {
     struct accuracy_session **at = &service->sessions;
@@ -79,8 +79,8 @@ static void unlink_session(struct accuracy_service *service, const struct accura
     *at = session->next;
 }
 
-// Ends the client's session for good. It is handed to the caller, to be destroyed without the
-// mutex, or it is NULL: there was none, or the thread does it. Under the mutex.
+// Ends the client's session for good. Returns it to the caller, who destroys it without the mutex;
+// or NULL if there was none, or if the thread will destroy it. The mutex must be held.
 static struct accuracy_session *abandon(struct accuracy_service *service, uint32_t client_id)
 {
     struct accuracy_session *session = find(service, client_id);
@@ -112,7 +112,7 @@ static bool admit_frame(void *user)
     return may;
 }
 
-// The same within a frame, which is drawn to its end.
+// The same within a frame. A frame that has begun is drawn to its end.
 static void yield(void *user)
 {
     struct accuracy_service *service = user;
@@ -213,7 +213,7 @@ static void run_session(struct accuracy_service *service, struct accuracy_sessio
              session->state == ACCURACY_FAILED ? error.message : NULL);
 }
 
-// The oldest that waits. Under the mutex.
+// The oldest session that waits. The mutex must be held.
 static struct accuracy_session *next_session(const struct accuracy_service *service)
 {
     struct accuracy_session *session = service->sessions;
@@ -222,7 +222,7 @@ static struct accuracy_session *next_session(const struct accuracy_service *serv
     return session;
 }
 
-// Sleeps until there is something to do; lets go of a renderer that has been idle. Under the mutex.
+// Sleeps until there is work; frees a renderer that has been idle. The mutex must be held.
 static void wait_for_work(struct accuracy_service *service)
 {
     struct timespec end;
@@ -337,7 +337,8 @@ void accuracy_service_submit(struct accuracy_service *service, uint32_t client_i
     pthread_mutex_lock(&service->mutex);
     struct accuracy_session *session = find(service, client_id);
     pthread_mutex_unlock(&service->mutex);
-    // Until it is in the queue, it is this thread's alone: the client hears of that first.
+    // Until it is queued, the session belongs to this thread alone, so the client hears of the
+    // queue first.
     if (!session || session->state != ACCURACY_PREPARED)
         return;
     post(service, session, ACCURACY_QUEUED, NULL, NULL);
@@ -358,7 +359,7 @@ void accuracy_service_cancel(struct accuracy_service *service, uint32_t client_i
         session->state = ACCURACY_CANCELLED;
     pthread_cond_broadcast(&service->changed);
     pthread_mutex_unlock(&service->mutex);
-    // The thread tells of one that runs, when it has ended.
+    // The thread reports the end of a session that runs.
     if (waits) {
         post(service, session, ACCURACY_CANCELLED, NULL, NULL);
         scene_destroy(&session->scene);
@@ -394,7 +395,7 @@ bool accuracy_service_get_configuration(struct accuracy_service *service, uint32
                                         const char *name, struct frame_params *out_params,
                                         double *out_scale, struct error *out_error)
 {
-    // Sweep and params never change, and sessions go on this thread or after being abandoned.
+    // Sweep and params never change, and sessions end on this thread or after being abandoned.
     pthread_mutex_lock(&service->mutex);
     const struct accuracy_session *session = find(service, client_id);
     pthread_mutex_unlock(&service->mutex);

@@ -24,8 +24,8 @@ static bool choose_id(char out_id[ACCURACY_ID_SIZE])
     return true;
 }
 
-// As large as it is, or so much smaller that it has no more pixels than are measured. (Views are so
-// narrow that neither edge comes down to 0.)
+// The view's size, scaled down to the limit of measured pixels. (No view is so narrow that an edge
+// becomes 0.)
 static void choose_size(struct frame_params *params)
 {
     double pixels = (double)params->width * params->height;
@@ -91,13 +91,13 @@ static int remove_entry(const char *path, const struct stat *status, int kind, s
     (void)status;
     (void)kind;
     (void)walk;
-    // What is being written may be renamed meanwhile.
+    // A file that is being written may be renamed meanwhile.
     return remove(path) == 0 || errno == ENOENT ? 0 : -1;
 }
 
 void accuracy_session_remove_files(const struct accuracy_session *session)
 {
-    // Files may come while others go; none can once the folder has gone.
+    // New files may appear while others are removed, but none once the folder has gone.
     for (int i = 0; session->folder[0] && i < REMOVE_TRIES; i++) {
         nftw(session->folder, remove_entry, MAX_OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS);
         if (access(session->folder, F_OK) != 0)

@@ -8,10 +8,10 @@
 struct environment_loader {
     void (*done)(void *user);
     void *user;
-    bool busy; // of the thread that starts and takes
+    bool busy; // used by the thread that starts loads and takes results
     pthread_t thread;
     char *path;
-    atomic_bool finished; // what follows is the taker's to read
+    atomic_bool finished; // once true, the taker may read the fields below
     struct environment_image *image;
     struct error error;
 };

@@ -6,19 +6,20 @@
 
 struct environment_loader;
 
-// `done` is called from the loading thread when a result can be taken.
+// The loading thread calls `done` when a result can be taken.
 struct environment_loader *environment_loader_create(void (*done)(void *user), void *user);
 
 // Waits for a load under way, and frees its result.
 void environment_loader_destroy(struct environment_loader **loader);
 
-// Starts to load; false if a load is under way or the thread cannot start. Runs on one thread,
-// which also takes the result.
+// Starts to load. False if a load is under way or the thread cannot start. Call it on the thread
+// that takes the result.
 bool environment_loader_start(struct environment_loader *loader, const char *path);
 
-bool environment_loader_is_busy(const struct environment_loader *loader); // until it is taken
+bool environment_loader_is_busy(
+    const struct environment_loader *loader); // until the result is taken
 
-// True when a load has ended: the reference of `out_image` is the caller's, or NULL with the
+// True when a load has ended: `out_image` is a reference that the caller owns, or NULL with the
 // reason.
 bool environment_loader_take(struct environment_loader *loader,
                              struct environment_image **out_image, struct error *out_error);

@@ -26,7 +26,7 @@ struct file_watch {
     int stop_fd;
     pthread_t thread;
     atomic_bool has_changed;
-    pthread_mutex_t mutex; // of what follows
+    pthread_mutex_t mutex; // protects the fields below
     uint32_t folder_count;
     int folders[FILE_WATCH_MAX_FOLDERS];
     uint32_t file_count;
@@ -44,7 +44,7 @@ static bool is_watched(struct file_watch *watch, const struct inotify_event *eve
     return watched;
 }
 
-// Whether one of the events that wait is about a watched file.
+// Whether one of the pending events is about a watched file.
 static bool read_events(struct file_watch *watch)
 {
     _Alignas(struct inotify_event) char buffer[8192];
@@ -100,7 +100,7 @@ struct file_watch *file_watch_create(void (*changed)(void *user), void *user)
     return NULL;
 }
 
-// With the mutex held.
+// The mutex must be held.
 static void clear(struct file_watch *watch)
 {
     for (uint32_t i = 0; i < watch->folder_count; i++)
@@ -129,7 +129,7 @@ void file_watch_destroy(struct file_watch **watch)
     *watch = NULL;
 }
 
-// The watch descriptor of a folder, or -1. Editors replace files, so folders are watched.
+// The watch descriptor of a folder, or -1. Folders are watched, since editors replace files.
 static int watch_folder(struct file_watch *watch, const char *folder)
 {
     int descriptor = inotify_add_watch(watch->inotify_fd, folder, IN_CLOSE_WRITE | IN_MOVED_TO);

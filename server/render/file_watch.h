@@ -1,4 +1,4 @@
-// Tells when one of a set of files was written, once writing has paused for 200 ms.
+// Reports when one of a set of files was written, after 200 ms without further writing.
 #ifndef VOXCAST_SERVER_RENDER_FILE_WATCH_H
 #define VOXCAST_SERVER_RENDER_FILE_WATCH_H
 
@@ -9,7 +9,7 @@
 
 struct file_watch;
 
-// `changed` is called from the watching thread. NULL with a line in the log if the system gives no
+// The watching thread calls `changed`. NULL, with a line in the log, if the system provides no
 // watches.
 struct file_watch *file_watch_create(void (*changed)(void *user), void *user);
 void file_watch_destroy(struct file_watch **watch);

@@ -6,8 +6,8 @@
 #define FRAMES_TO_CLIMB    8u
 #define FRAMES_TO_LEARN    3u
 #define CLIMB_FRACTION     0.8  // of the target
-#define MIN_RATIO          1.25 // so that a drop that brought little is not undone at once
-#define LOWER_ROW_FRACTION 0.5f // of the way to the wanted image
+#define MIN_RATIO          1.25 // so that a drop that gained little is not undone at once
+#define LOWER_ROW_FRACTION 0.5f // convergence reported for the last frame of a lower row
 
 void quality_controller_move(struct quality_controller *controller, uint64_t now_us)
 {
@@ -40,7 +40,7 @@ uint64_t quality_controller_next_us(const struct quality_controller *controller,
     return controller->moved_at_us + QUALITY_REST_US;
 }
 
-// The shortest time counts: a frame that compiles shaders or allocates says nothing.
+// The shortest time counts: longer ones may hold compiling of shaders or allocations.
 static void take_interactive(struct quality_controller *controller, double target_ms,
                              double frame_ms)
 {

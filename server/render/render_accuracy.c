@@ -1,4 +1,4 @@
-// Measuring accuracy: what clients ask for, with a copy of the document as it stands.
+// Clients' measurements of accuracy, on a copy of the document as it is when they ask.
 #include "server/render/render_internal.h"
 
 #include <string.h>

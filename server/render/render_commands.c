@@ -1,4 +1,4 @@
-// Commands from clients: each is answered, and edits are told to all.
+// Commands of clients: each gets a reply, and edits are reported to all.
 #include "server/document/edit_log.h"
 #include "server/render/render_internal.h"
 
@@ -131,7 +131,7 @@ static void run_texture_get(struct render_thread *thread, const struct command *
         render_reply_error(thread, command, &error);
 }
 
-// Whether another image is asked for, not only another quality of it.
+// Whether another image is wanted, rather than the same one in another quality.
 static bool shows_other_things(const struct view_options *a, const struct view_options *b)
 {
     return memcmp(&a->camera, &b->camera, sizeof(a->camera)) != 0 || a->width != b->width ||
@@ -223,7 +223,7 @@ static void broadcast_edit(struct render_thread *thread, const struct render_cli
 void render_publish_edit(struct render_thread *thread, struct render_client *client,
                          const struct command *command, cJSON *edit)
 {
-    // What takes long to load may come after later edits.
+    // Slow loads may finish after later edits.
     if (client && command->has_edit_id && command->edit_id > client->edit_id)
         client->edit_id = command->edit_id;
     thread->revision++;
@@ -267,7 +267,7 @@ static bool works_without_scene(enum method method)
 void render_run_command(struct render_thread *thread, struct command *command)
 {
     struct render_client *client = render_find_client(thread, command->client_id);
-    // A client that has gone, while its command waited, hears nothing any more.
+    // A client that has gone while its command waited gets no reply.
     if (!client && command->method != METHOD_SESSION_HELLO)
         return;
     if (!thread->scene && !works_without_scene(command->method)) {

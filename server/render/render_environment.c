@@ -86,10 +86,10 @@ static void finish_load(struct render_thread *thread, struct environment_image *
     struct render_client *client = command ? render_find_client(thread, command->client_id) : NULL;
     struct environment_image *shown = thread->scene ? thread->scene->environment.image : NULL;
     bool other_scene = thread->environment_epoch != thread->epoch;
-    // What changed on disk may not be shown any more.
+    // The file that changed on disk may not be the one that is shown any more.
     bool stale = !command && (other_scene || !shown || !shown->path ||
                               (image && strcmp(shown->path, image->path) != 0));
-    bool gone = command && !client; // and so are its steps of undo
+    bool gone = command && !client; // its undo steps have gone, too
     if (!image && !stale) {
         refuse(thread, command, error->message);
     } else if (command && other_scene) {

@@ -129,7 +129,7 @@ static void send_loaded(struct render_thread *thread, bool other_source)
     }
 }
 
-// Clients find the same texts in `scene.get`.
+// `scene.get` reports the same texts to clients.
 static void log_warnings(const struct render_thread *thread)
 {
     for (uint32_t i = 0; i < thread->scene->warning_count; i++)
@@ -137,7 +137,7 @@ static void log_warnings(const struct render_thread *thread)
                   thread->scene->warnings[i]);
 }
 
-// Shows the scene and lets go of the old one. On failure the old one stays and `scene` is freed.
+// Shows the scene and frees the old one. On failure the old one stays and `scene` is freed.
 static bool swap_scene(struct render_thread *thread, struct scene *scene, struct error *error)
 {
     struct animation_state *animations = calloc(scene->animation_count + 1, sizeof(*animations));
@@ -202,8 +202,8 @@ static void report_failed_load(struct render_thread *thread, const struct error 
     }
 }
 
-// An image that a reload can no longer read is taken for broken or half-written: the last good
-// scene stays until it is whole again.
+// An image that a reload can no longer read is assumed to be broken or half-written: the last good
+// scene stays until the image is complete again.
 static bool lost_a_picture(const struct render_thread *thread, const struct scene *scene,
                            struct error *error)
 {

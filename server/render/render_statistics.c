@@ -43,8 +43,8 @@ static void add_passes(cJSON *params, const struct frame_statistics *statistics)
                    (double)statistics->rejects[i].count);
 }
 
-// The stage that takes longest. Waiting for an acknowledgement counts only in so far as it is
-// longer than what two frames under way hide.
+// The stage that takes longest. Waiting for an acknowledgement counts only where it is longer than
+// two frames under way can hide.
 static const char *find_bottleneck(double render_ms, const struct stage_times *times)
 {
     struct {

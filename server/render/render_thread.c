@@ -75,7 +75,7 @@ static void wake(void *user)
     mailbox_wake(thread->params.mailbox);
 }
 
-// Whether a client could be sent a frame if the image changed.
+// Whether a frame could be sent to any client if its image changed.
 static bool any_could_draw(struct render_thread *thread)
 {
     for (uint32_t slot = 0; slot < FRAME_STREAM_MAX_CLIENTS; slot++) {
@@ -87,7 +87,7 @@ static bool any_could_draw(struct render_thread *thread)
     return false;
 }
 
-// Moves running animations on to now. Returns when to be called again.
+// Advances running animations to the present. Returns when to call again.
 static uint64_t animate(struct render_thread *thread)
 {
     struct scene *scene = thread->scene;
@@ -100,7 +100,7 @@ static uint64_t animate(struct render_thread *thread)
         thread->animated_at_us = now;
         return MAILBOX_NO_DEADLINE;
     }
-    // Without anybody to draw for, time is made up for later.
+    // While nobody can see it, time is caught up with later.
     if (!any_could_draw(thread))
         return MAILBOX_NO_DEADLINE;
     if (now - thread->animated_at_us < ANIMATION_STEP_US)
@@ -195,7 +195,7 @@ static bool open_renderer(struct render_thread *thread)
     return true;
 }
 
-// For tests: the context is lost at that frame.
+// For tests: loses the context at that frame.
 static void inject_fault(struct render_thread *thread)
 {
     const char *frame = getenv("VOXCAST_LOSE_CONTEXT");
@@ -203,7 +203,8 @@ static void inject_fault(struct render_thread *thread)
         renderer_inject_fault(thread->renderer, RENDERER_FAULT_CONTEXT, strtoull(frame, NULL, 10));
 }
 
-// Takes another renderer for one whose GL context is lost. The document and all clients stay.
+// Creates another renderer in place of one whose GL context is lost. The document and all clients
+// stay.
 static void renew_renderer(struct render_thread *thread)
 {
     struct error error = {""};
@@ -249,7 +250,7 @@ struct render_thread *render_thread_start(const struct render_thread_params *par
     if (!thread)
         return NULL;
     thread->params = *params;
-    // Epochs of an earlier run of the daemon must not be taken for this one's.
+    // Clients must not take epochs of an earlier run of the daemon for epochs of this run.
     thread->epoch = (uint64_t)time(NULL);
     render_settings_init(&thread->settings);
     pthread_mutex_init(&thread->status_mutex, NULL);

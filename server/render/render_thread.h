@@ -13,19 +13,19 @@
 
 struct render_thread;
 
-// All outlive the thread.
+// All must outlive the thread.
 struct render_thread_params {
     const char *gpu;
-    const char *scene_source;                          // path or "builtin:NAME"
-    const char *environment;                           // of that scene; NULL for its own
-    const char *scene_dir;                             // what clients may load from; NULL for none
-    uint32_t message_bytes, message_rate, max_clients; // told to clients
+    const char *scene_source; // path or "builtin:NAME"
+    const char *environment;  // for that scene; NULL for its own
+    const char *scene_dir;    // where clients may load scenes from; NULL for none
+    uint32_t message_bytes, message_rate, max_clients; // reported to clients
     struct mailbox *mailbox;
     struct outbox *outbox;
     struct frame_stream *stream;
     struct jpeg_workers *workers;
     struct accuracy_service *accuracy;
-    // Called from the thread when it cannot go on: no renderer, or the first scene fails.
+    // The thread calls it when it cannot go on: no renderer, or the first scene fails.
     void (*failed)(void *user);
     void *user;
 };
@@ -36,14 +36,14 @@ struct render_status {
     char gl_renderer[128];
     char scene[256];
     uint64_t frames_drawn;
-    uint64_t draw_us; // sum, from the call to the pixels
+    uint64_t draw_us; // sum, from the draw call to the pixels
     uint64_t revision;
 };
 
 // NULL when out of memory or threads.
 struct render_thread *render_thread_start(const struct render_thread_params *params);
 
-// Asks the thread to end after what it is doing; does not wait. Any thread.
+// Asks the thread to end after its present work; does not wait. Any thread.
 void render_thread_stop(struct render_thread *thread);
 
 // Stops and joins.

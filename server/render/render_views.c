@@ -1,4 +1,4 @@
-// The clients' views: whose turn it is, drawing, and handing pixels on.
+// The clients' views: whose turn it is, drawing, and passing on pixels.
 #include "server/render/render_internal.h"
 
 #include <math.h>
@@ -9,10 +9,11 @@
 
 #define STATISTICS_INTERVAL_US 500000u
 
-// How long a reference that has nothing new is left alone.
+// How long to wait before asking a reference for news again.
 #define PENDING_US 30000u
 
-// While one client's image moves, frames that only make others' better take at most this share.
+// While one client's view moves, frames that only converge take at most 1/REFINE_FRACTION of the
+// time.
 #define REFINE_FRACTION 8u
 
 struct render_client *render_find_client(struct render_thread *thread, uint32_t client_id)
@@ -35,7 +36,7 @@ struct render_client *render_add_client(struct render_thread *thread, uint32_t c
         if (!client->view)
             return NULL;
         client->client_id = client_id;
-        client->statistics_at_us = clock_now_us(); // the first tell of encoded frames, too
+        client->statistics_at_us = clock_now_us(); // the first statistics cover encoded frames, too
         view_options_init(&client->options);
         if (thread->scene)
             render_reset_camera(thread->scene, &client->options.camera);
@@ -140,13 +141,13 @@ static bool wants_draw(struct render_thread *thread, uint32_t slot, uint64_t now
            frame_stream_wants_frame(thread->params.stream, slot);
 }
 
-// Whether the client's image does not show the newest state, rather than being rough only.
+// Whether the client's image is out of date, rather than only not converged.
 static bool is_urgent(const struct render_client *client, uint64_t now)
 {
     return client->dirty_since_us != 0 || quality_controller_is_moving(&client->quality, now);
 }
 
-// From when on frames may be drawn that only make an image better: at once, if nobody moves.
+// The time from which frames may be drawn that only converge: at once, if nobody moves.
 static uint64_t refine_from_us(const struct render_thread *thread, uint64_t now)
 {
     for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
@@ -168,7 +169,7 @@ uint64_t render_next_draw_us(struct render_thread *thread)
             continue;
         struct quality_request request = request_of(client);
         uint64_t change = quality_controller_next_us(&client->quality, &request, now);
-        // Time has passed since it was asked last: stillness may have come just now.
+        // Time has passed since the last query: the client may have come to rest just now.
         if (client->pending_until_us > now)
             change = client->pending_until_us;
         else if (wants_draw(thread, slot, now))
@@ -211,8 +212,8 @@ static void fill_header(struct render_thread *thread, struct render_client *clie
     };
 }
 
-// The newest frame shows what has come since, too: nothing of it has changed the image. True if
-// there was any such thing, which clients hear of by their statistics.
+// The newest frame also shows the commands since, since they changed nothing of the image. True if
+// there were any; clients learn of them by the statistics.
 static bool take_unchanged(struct render_client *client)
 {
     struct frame_header *shown = &client->header;
@@ -243,7 +244,7 @@ struct render_settings render_resolve_settings(const struct render_thread *threa
     return settings;
 }
 
-// How the image is shown stays as all others are.
+// Exposure and tone curve stay those of the shared settings.
 static void apply_configuration(const struct configuration_override *configuration,
                                 struct frame_params *params)
 {
@@ -296,7 +297,7 @@ static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
         client->pending_until_us = clock_now_us() + PENDING_US;
     } else if (result == RENDER_DRAWN) {
         fill_header(thread, client, start);
-        client->dirty = true; // until the renderer says that there is nothing more to draw
+        client->dirty = true; // until the renderer says that nothing more is to be drawn
         client->dirty_since_us = 0;
         client->drawn_at_us = clock_now_us();
         client->header.draw_us = (uint32_t)(client->drawn_at_us - start);
@@ -307,7 +308,7 @@ static bool draw(struct render_thread *thread, uint32_t slot, uint64_t now)
     return result == RENDER_DRAWN;
 }
 
-// Draws for the next client, in turn, that is urgent or not.
+// Draws for the next client, in turn, that is urgent (or not).
 static bool draw_one_of(struct render_thread *thread, bool urgent)
 {
     for (uint32_t i = 0; i < FRAME_STREAM_MAX_CLIENTS; i++) {
@@ -326,7 +327,8 @@ static bool draw_one_of(struct render_thread *thread, bool urgent)
 bool render_draw_next(struct render_thread *thread)
 {
     uint64_t now = clock_now_us(), refine_us = refine_from_us(thread, now);
-    // While somebody moves, the others' turn comes seldom, but then it comes first.
+    // While somebody moves, refinement gets 1/REFINE_FRACTION of the time, and priority when it is
+    // due.
     if (refine_us > 0 && refine_us <= now && draw_one_of(thread, false))
         return true;
     return draw_one_of(thread, true) || (refine_us == 0 && draw_one_of(thread, false));

@@ -14,11 +14,11 @@
 struct scene_loader {
     void (*done)(void *user);
     void *user;
-    bool busy; // of the thread that starts and takes
+    bool busy; // used by the thread that starts loads and takes results
     pthread_t thread;
     char *source;
     char *environment;    // NULL for the scene's own
-    atomic_bool finished; // what follows is the taker's to read
+    atomic_bool finished; // once true, the taker may read the fields below
     struct scene *scene;
     struct error error;
 };
@@ -109,7 +109,7 @@ static bool ends_with_one(const char *name, const char *const *extensions)
 }
 
 struct listing {
-    const char *const *extensions; // ended by NULL
+    const char *const *extensions; // list that NULL ends
     char **sources;
     uint32_t count, capacity;
 };
@@ -173,7 +173,7 @@ static bool is_builtin(const char *source)
     return false;
 }
 
-// `what` names the things in the message.
+// `what` names the kind of thing in the message.
 static char *resolve(const char *folder, const char *const *extensions, const char *source,
                      const char *what, struct error *out_error)
 {

@@ -6,14 +6,14 @@
 
 struct scene_loader;
 
-// `done` is called from the loading thread when a result can be taken.
+// The loading thread calls `done` when a result can be taken.
 struct scene_loader *scene_loader_create(void (*done)(void *user), void *user);
 
 // Waits for a load under way, and frees its result.
 void scene_loader_destroy(struct scene_loader **loader);
 
-// Starts to load, in the environment of a file or, with NULL, the scene's own; false if a load is
-// under way or the thread cannot start. Runs on one thread, which also takes the result.
+// Starts to load, with the environment of a file or, for NULL, with the scene's own. False if a
+// load is under way or the thread cannot start. Call it on the thread that takes the result.
 bool scene_loader_start(struct scene_loader *loader, const char *source, const char *environment);
 
 bool scene_loader_is_busy(const struct scene_loader *loader); // until the result is taken
@@ -22,15 +22,15 @@ bool scene_loader_is_busy(const struct scene_loader *loader); // until the resul
 bool scene_loader_take(struct scene_loader *loader, struct scene **out_scene,
                        struct error *out_error);
 
-// Fills at most `capacity` sources that may be loaded: files below `folder`, named relative to it,
-// in order of name; NULL for none. Each is from malloc, the caller's. Returns their count.
+// Fills at most `capacity` sources that may be loaded: files below `folder` (NULL for none), named
+// relative to it, sorted by name. The caller frees each. Returns their count.
 uint32_t scene_loader_list(const char *folder, char **out_sources, uint32_t capacity);
 
-// The same of environment images.
+// The same for environment images.
 uint32_t scene_loader_list_environments(const char *folder, char **out_names, uint32_t capacity);
 
-// The path of a source that a client may load ("builtin:NAME", or a file below `folder`), from
-// malloc, the caller's; NULL with a message.
+// The path of a source that a client may load ("builtin:NAME", or a file below `folder`). The
+// caller frees it; NULL with a message.
 char *scene_loader_resolve(const char *folder, const char *source, struct error *out_error);
 
 // The path of an environment image below `folder`, likewise.

@@ -15,7 +15,7 @@ struct sent_frame {
 struct slot {
     enum slot_state state;
     uint32_t client_id;
-    uint32_t in_work; // begun, not finished
+    uint32_t in_work; // begun, but not finished
     struct encoded_frame *pending;
     uint32_t sent_count;
     struct sent_frame sent[FRAME_STREAM_MAX_UNACKNOWLEDGED]; // unacknowledged, oldest first

@@ -1,8 +1,8 @@
-// Where the three kinds of threads meet over frames: one slot for each client.
+// Where the three kinds of threads exchange frames: one slot for each client.
 //
-// The network loop opens and closes slots, takes encoded frames and reports acknowledgements; the
-// render thread asks which client may have another frame; the JPEG workers hand in what they made.
-// Each call locks one mutex briefly; a slow client holds up nobody.
+// The network loop opens and closes slots, takes encoded frames and reports acknowledgements. The
+// render thread asks which client may have another frame. The JPEG workers hand in frames. Each
+// call holds one mutex briefly; a slow client delays nobody.
 #ifndef VOXCAST_SERVER_STREAM_FRAME_STREAM_H
 #define VOXCAST_SERVER_STREAM_FRAME_STREAM_H
 
@@ -18,9 +18,9 @@
 
 struct frame_stream;
 
-// A message ready to be sent: FRAME_STREAM_PREFIX_BYTES unused, the header, the JPEG.
+// A message ready to be sent: FRAME_STREAM_PREFIX_BYTES unused bytes, the header, the JPEG.
 struct encoded_frame {
-    struct frame_header header; // written out when the frame is sent
+    struct frame_header header; // written into the message when the frame is sent
     uint64_t encoded_at_us;
     size_t message_bytes; // header and JPEG
     uint8_t bytes[];
@@ -38,7 +38,7 @@ struct frame_stream_totals {
 };
 
 // Called when a client's slot holds a frame to send (network), or when a client may have another
-// frame or has gone (render). Both are called without locks held.
+// frame or has gone (render). No locks are held then.
 struct frame_stream_params {
     uint32_t max_clients;
     void (*wake_network)(void *user);
@@ -54,25 +54,25 @@ bool frame_stream_open(struct frame_stream *stream, uint32_t *out_slot, uint32_t
 bool frame_stream_is_full(struct frame_stream *stream);
 void frame_stream_close(struct frame_stream *stream, uint32_t slot);
 
-// Network loop. The frame to send now, the caller's to free(), or NULL if there is none or two are
+// Network loop. The frame to send now, which the caller frees, or NULL if there is none or two are
 // unacknowledged. Its header is complete and written.
 struct encoded_frame *frame_stream_take(struct frame_stream *stream, uint32_t slot);
-bool frame_stream_has_frame(struct frame_stream *stream, uint32_t slot); // to take
+bool frame_stream_has_frame(struct frame_stream *stream, uint32_t slot); // that can be sent
 void frame_stream_acknowledge(struct frame_stream *stream, uint32_t slot, uint64_t frame_id);
 
 // Render thread. The id of the client in the slot; 0 if it is free or its client has gone.
 uint32_t frame_stream_get_client(struct frame_stream *stream, uint32_t slot);
 
-// Render thread. Frees the slots whose clients have gone and whose frames have come out of the
-// workers.
+// Render thread. Frees the slots of clients that have gone, once the workers have finished their
+// frames.
 void frame_stream_collect_closed(struct frame_stream *stream);
 
 // Render thread. Whether to draw for this client; and that a frame was drawn and will be finished.
 bool frame_stream_wants_frame(struct frame_stream *stream, uint32_t slot);
 void frame_stream_begin(struct frame_stream *stream, uint32_t slot);
 
-// Any thread, once for each begin. Takes over `frame`; NULL if it failed. A frame that waits is
-// replaced.
+// Any thread, once for each begin. Takes over `frame`; NULL if encoding failed. Replaces a frame
+// that waits.
 void frame_stream_finish(struct frame_stream *stream, uint32_t slot, struct encoded_frame *frame);
 
 void frame_stream_get_times(struct frame_stream *stream, uint32_t slot,

@@ -31,7 +31,7 @@ struct jpeg_workers {
     struct job *jobs[MAX_JOBS];
 };
 
-// What one thread keeps between jobs.
+// What a thread keeps between jobs.
 struct encoder {
     tjhandle handle;
     unsigned char *buffer;

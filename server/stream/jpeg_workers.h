@@ -1,4 +1,4 @@
-// Threads that turn planes of pixels into JPEG frames. They hold copies: own bytes only.
+// Threads that encode planes of pixels as JPEG frames. They work on copies of the planes.
 #ifndef VOXCAST_SERVER_STREAM_JPEG_WORKERS_H
 #define VOXCAST_SERVER_STREAM_JPEG_WORKERS_H
 
@@ -14,7 +14,7 @@ struct jpeg_workers;
 struct jpeg_workers_params {
     uint32_t thread_count;       // 1 to JPEG_MAX_WORKERS
     int quality;                 // 1 to 100
-    struct frame_stream *stream; // outlives the workers
+    struct frame_stream *stream; // must outlive the workers
 };
 
 // NULL when out of memory or threads.
@@ -23,9 +23,9 @@ struct jpeg_workers *jpeg_workers_create(const struct jpeg_workers_params *param
 // Finishes the jobs at hand, drops those that wait, and joins the threads.
 void jpeg_workers_destroy(struct jpeg_workers **workers);
 
-// Copies the planes (FRAME_OUTPUT_YCBCR) and hands them to a worker, which fills the header's sizes
-// and encode time and calls frame_stream_finish() for the slot, also when that fails. Runs on the
-// render thread.
+// Copies the planes (FRAME_OUTPUT_YCBCR) and queues them for a worker. The worker fills in the
+// header's sizes and encode time and calls frame_stream_finish() for the slot, also on failure.
+// Runs on the render thread.
 void jpeg_workers_submit(struct jpeg_workers *workers, uint32_t slot,
                          const struct frame_header *header, const struct frame_pixels *pixels);
 

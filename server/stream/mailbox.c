@@ -47,7 +47,7 @@ static struct command *remove_at(struct mailbox *mailbox, uint32_t index)
     return command;
 }
 
-// The waiting command that `command` supersedes, or mailbox->count.
+// The index of the waiting command that `command` supersedes, or mailbox->count.
 static uint32_t find_superseded(const struct mailbox *mailbox, const struct command *command)
 {
     for (uint32_t i = mailbox->count; i-- > 0;) {

@@ -1,4 +1,4 @@
-// Commands from the network loop to the render thread: bounded, in order, newest per key wins.
+// Commands from the network loop to the render thread: bounded, in order; the newest of a key wins.
 #ifndef VOXCAST_SERVER_STREAM_MAILBOX_H
 #define VOXCAST_SERVER_STREAM_MAILBOX_H
 
@@ -15,23 +15,24 @@ struct mailbox;
 
 enum mailbox_result {
     MAILBOX_POSTED,
-    MAILBOX_SUPERSEDED, // posted, and an older command of the same key was taken out for it
+    MAILBOX_SUPERSEDED, // posted; it replaced an older command of the same key
     MAILBOX_FULL,
 };
 
 // NULL when out of memory.
 struct mailbox *mailbox_create(void);
 
-// Frees the commands that wait, too.
+// Also frees the commands that wait.
 void mailbox_destroy(struct mailbox **mailbox);
 
-// Appends a command from malloc and takes it over, except with MAILBOX_FULL. A waiting command that
-// it supersedes is freed, its edit ids pass on to `command`, and `out_superseded` is its request's
-// id. A command is not taken past another one that does not merge (such as an undo). Any thread.
+// Appends a command from malloc and takes it over, except with MAILBOX_FULL. It replaces a waiting
+// command that it supersedes: that is freed, its edit ids pass on to `command`, and
+// `out_superseded` is its request's id. A command never moves past one that does not merge (such as
+// an undo). Any thread.
 enum mailbox_result mailbox_post(struct mailbox *mailbox, struct command *command,
                                  struct rpc_id *out_superseded);
 
-// The oldest command, the caller's to free(); NULL if none waits.
+// The oldest command, which the caller frees; NULL if none waits.
 struct command *mailbox_take(struct mailbox *mailbox);
 
 // Sleeps until a command waits, mailbox_wake() was called since the last return, or clock_now_us()

@@ -12,10 +12,10 @@ struct outbox;
 
 struct outbox_message {
     uint32_t client_id;
-    char *text; // from malloc, the receiver's
+    char *text; // from malloc; the receiver frees it
 };
 
-// `wake` is called after a message was put into an empty outbox, from the thread that posts.
+// The posting thread calls `wake` after putting a message into an empty outbox.
 struct outbox_params {
     void (*wake)(void *user);
     void *user;
@@ -24,14 +24,15 @@ struct outbox_params {
 struct outbox *outbox_create(const struct outbox_params *params);
 void outbox_destroy(struct outbox **outbox);
 
-// Takes over `text` (NULL, from a failed allocation, is passed over). Blocks while the outbox is
-// full and not closed: the network loop never waits for the caller. Any thread.
+// Takes over `text` (NULL, from a failed allocation, is ignored). Blocks while the outbox is full
+// and not closed; this cannot deadlock, since the network loop never waits for the caller. Any
+// thread.
 void outbox_post(struct outbox *outbox, uint32_t client_id, char *text);
 
 // False if there is none.
 bool outbox_take(struct outbox *outbox, struct outbox_message *out_message);
 
-// From now on posts are dropped: nobody takes them any more.
+// Drops all further posts, since nobody takes them any more.
 void outbox_close(struct outbox *outbox);
 
 #endif
