@@ -1,4 +1,4 @@
-// voxcast: the offline tool. Renders images, measures, and tells about the GPU.
+// voxcast: the offline tool. Renders images, measures, and reports on the GPU.
 #include <stdio.h>
 #include <string.h>
 

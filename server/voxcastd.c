@@ -15,8 +15,8 @@
 #include "server/render/render_thread.h"
 #include "voxcast_paths.h"
 
-// Once told to stop, the program ends within this time, whatever a driver or a file keeps it at.
-// Sanitizers are to see what is left when all has ended.
+// Told to stop, the program ends within this time, whatever a driver or a file is doing. Sanitizers
+// need longer, to see what is left when all has ended.
 #ifdef VOXCAST_SANITIZED
 #define STOP_MS 60000
 #else
@@ -86,7 +86,7 @@ static void wake_render(void *user)
     mailbox_wake(daemon->mailbox);
 }
 
-// The render thread cannot go on: ends the program as a signal would.
+// Called when the render thread cannot go on: ends the program as a signal would.
 static void render_failed(void *user)
 {
     (void)user;
@@ -163,7 +163,7 @@ static bool start_threads(struct daemon *daemon, struct error *error)
     return true;
 }
 
-// SIGINT and SIGTERM, which main() alone takes.
+// Only main() takes SIGINT and SIGTERM.
 static void list_signals(sigset_t *out_signals)
 {
     sigemptyset(out_signals);
@@ -171,8 +171,8 @@ static void list_signals(sigset_t *out_signals)
     sigaddset(out_signals, SIGINT);
 }
 
-// Compiling a shader, drawing a frame or reading a file may take many seconds, and none can be
-// interrupted. Nothing is lost by ending there: clients have been told, and files are removed.
+// Compiling a shader, drawing a frame or reading a file may take many seconds and cannot be
+// interrupted. Ending there loses nothing: clients have been told, and files are removed.
 static void *end_in_time(void *exit_status)
 {
     sigset_t signals;
@@ -182,7 +182,8 @@ static void *end_in_time(void *exit_status)
     _exit((int)(intptr_t)exit_status);
 }
 
-// In the order that lets each part finish what the others wait for. Returns the exit status.
+// Stops the parts in an order that lets each finish what the others wait for. Returns the exit
+// status.
 static int stop(struct daemon *daemon, bool fine)
 {
     if (daemon->render) {
@@ -229,7 +230,7 @@ int main(int argument_count, char **arguments)
         puts("voxcastd " VOXCAST_VERSION);
         return 0;
     }
-    // Before any thread starts: all inherit it, and sigwait() below gets the signals.
+    // Before any thread starts: all inherit the mask, and sigwait() below gets the signals.
     sigset_t signals;
     list_signals(&signals);
     pthread_sigmask(SIG_BLOCK, &signals, NULL);

@@ -24,8 +24,7 @@ struct accuracy_progress {
 
 // Receives the progress of a run, and may end it. All zero: nobody.
 struct accuracy_watch {
-    bool (*tell)(void *user,
-                 const struct accuracy_progress *progress); // returns false to end the run
+    bool (*tell)(void *user, const struct accuracy_progress *progress); // false ends the run
     void *user;
 };
 

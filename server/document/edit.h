@@ -22,8 +22,7 @@ struct edit_step {
     uint32_t value_count;
     struct parameter_value before[COMMAND_MAX_VALUES];
     struct parameter_value after[COMMAND_MAX_VALUES];
-    struct environment_image *image_before,
-        *image_after; // of environment.load; holds a reference to each
+    struct environment_image *image_before, *image_after; // of environment.load; referenced
 };
 
 // One client's edits: steps below `position` can be undone, the others redone. All zero is empty.

@@ -16,8 +16,7 @@ void environment_loader_destroy(struct environment_loader **loader);
 // that takes the result.
 bool environment_loader_start(struct environment_loader *loader, const char *path);
 
-bool environment_loader_is_busy(
-    const struct environment_loader *loader); // until the result is taken
+bool environment_loader_is_busy(const struct environment_loader *loader); // until it is taken
 
 // True when a load has ended: `out_image` is a reference that the caller owns, or NULL with the
 // reason.

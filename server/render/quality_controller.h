@@ -21,12 +21,11 @@ struct quality_request {
 // One view's state; all 0 is a view that has never changed.
 struct quality_controller {
     uint64_t moved_at_us;
-    enum quality last_row; // of the newest frame
-    bool draft;            // frames in motion use the draft row
-    uint32_t over_count;   // interactive frames in a row that took too long
-    uint32_t under_count;  // draft frames in a row after which interactive ones would fit
-    uint32_t
-        draft_count; // draft frames since the last drop, as long as they are used to estimate times
+    enum quality last_row;    // of the newest frame
+    bool draft;               // frames in motion use the draft row
+    uint32_t over_count;      // interactive frames in a row that took too long
+    uint32_t under_count;     // draft frames in a row after which interactive ones would fit
+    uint32_t draft_count;     // draft frames since the last drop, at most FRAMES_TO_LEARN
     double interactive_ms;    // of the frames that led to the last drop
     double draft_ms;          // of the first frames after it
     double interactive_ratio; // from these two: interactive over draft

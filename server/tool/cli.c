@@ -13,7 +13,7 @@ int cli_fail(int status, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(message, sizeof(message), format, arguments);
     va_end(arguments);
-    for (char *at = message; *at; at++) // one line, whatever a driver's log held
+    for (char *at = message; *at; at++) // one line, whatever a driver's log holds
         if (*at == '\n')
             *at = ' ';
     fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);

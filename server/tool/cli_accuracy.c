@@ -1,4 +1,4 @@
-// voxcast accuracy: what accuracy costs in time, for every setting of a sweep.
+// voxcast accuracy: what accuracy costs in time, for every configuration of a sweep.
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>
@@ -60,7 +60,7 @@ struct accuracy_options {
     double until_noise;
 };
 
-// When the reference image was last told of.
+// When progress of the reference image was last printed.
 struct teller {
     double told_ms;
 };
@@ -105,7 +105,7 @@ static bool tell(void *user, const struct accuracy_progress *progress)
     return true;
 }
 
-// Names the metrics by which the reference image is not good enough.
+// Names the metrics by which the reference image is too noisy.
 static void warn_of_noise(const cJSON *results)
 {
     static const char *const parts[2] = {"metrics", "indirect"};

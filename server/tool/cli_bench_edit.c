@@ -1,5 +1,5 @@
-// voxcast bench edit: how soon an image shows that a light was edited, and how soon it has become
-// what the edit makes of it.
+// voxcast bench edit: how soon an image shows that a light was edited, and how soon the change is
+// complete.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>

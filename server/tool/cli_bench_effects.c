@@ -1,5 +1,5 @@
 // voxcast bench effects: what leaving out unneeded effects saves. Each scene is measured as planned
-// and with every effect forced; the images are the same, time and memory are not.
+// and with every effect forced. The images are the same; time and memory are not.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -34,7 +34,7 @@ struct effects_options {
     const char *gpu, *environment;
     struct cli_size size;
     uint32_t frames, quality;
-    uint32_t gi; // CLI_NO_CHOICE: as settings have it
+    uint32_t gi; // CLI_NO_CHOICE: as the settings say
     bool json;
 };
 

@@ -1,5 +1,5 @@
 // voxcast bench natus: what each step of voxel global illumination costs in a Cornell box, by the
-// resolution of the voxels, and with voxels that are kept or made anew for each frame.
+// resolution of the voxels, with voxels that are kept or rebuilt for each frame.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -56,7 +56,7 @@ static const struct natus_test {
     const char *name;
     enum gi_method method;
     bool ambient_occlusion;
-    bool emissive; // lit by the wall, else by the light
+    bool emissive; // lit by the emissive wall, else by the light
     bool soft_shadows;
 } tests[] = {
     {1, "direct light", GI_METHOD_NONE, false, false, false},
@@ -100,7 +100,7 @@ static const char *effect_reason(const struct frame_statistics *statistics, cons
     return "there is no such effect";
 }
 
-// Whether the frames had the effects that the test names, and no others of these.
+// Whether the frames had exactly those of these effects that the test names.
 static bool check_effects(const struct natus_test *test, const struct frame_statistics *statistics,
                           struct error *out_error)
 {
@@ -180,7 +180,7 @@ static void take_row(struct natus *natus, const struct scene *scene, const struc
     cJSON_AddItemToObject(entry, "statistics", bench_result_json(&run, &row->result));
 }
 
-// All rows of one test.
+// Prints all rows of one test.
 static void run_test(struct natus *natus, const struct scene *scene, const struct natus_test *test)
 {
     if (test->method == GI_METHOD_NONE) {
@@ -196,7 +196,7 @@ static void run_test(struct natus *natus, const struct scene *scene, const struc
     }
 }
 
-// The tests of one of the two scenes.
+// Runs the tests of one of the two scenes.
 static bool run_scene(struct natus *natus, bool emissive, struct error *out_error)
 {
     const struct natus_options *options = natus->options;
@@ -215,7 +215,7 @@ static bool run_scene(struct natus *natus, bool emissive, struct error *out_erro
     return done;
 }
 
-// The passes' names in two lines, broken at the first underscore.
+// Prints the passes' names in two lines, broken at the first underscore.
 static void print_pass_head(FILE *file, const struct frame_statistics *statistics,
                             const bool *shown, bool second_line)
 {

@@ -1,5 +1,5 @@
-// voxcast bench reference: how many rays per second the reference path tracer casts, against a bare
-// Embree loop over the same rays on the same scene, in turns within the same run.
+// voxcast bench reference: how many rays per second the path tracer casts, compared with a bare
+// Embree loop over the same rays on the same scene. Both take turns within one run.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-// voxcast compare: how far one image is from another, by every measure.
+// voxcast compare: how far one image is from another, by every metric.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -40,7 +40,7 @@ struct compare_options {
     bool json;
 };
 
-// Takes a file's light away from an image.
+// Subtracts the light of a file from an image.
 static bool subtract_file(struct picture *picture, const char *path, struct error *out_error)
 {
     struct picture part;

@@ -1,4 +1,4 @@
-// voxcast render: one scene to one image.
+// voxcast render: renders one scene to one image.
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
@@ -116,7 +116,8 @@ struct render_job {
     bool converged;
 };
 
-// Frames until the image has converged; measured if `measurement` is there, written if `path` is.
+// Draws frames until the image has converged. Adds them to `measurement` and writes the image to
+// `path`, if these are not NULL.
 static int render_converged(struct render_job *job, struct measurement *measurement,
                             const char *path)
 {
@@ -140,7 +141,7 @@ static int render_converged(struct render_job *job, struct measurement *measurem
     return status;
 }
 
-// Renders one frame, measures it, and writes it if `path` is there.
+// Renders one frame, adds it to `measurement`, and writes it if `path` is not NULL.
 static int render_one(struct render_job *job, bool measured, const char *path)
 {
     struct error error = {""};
@@ -162,11 +163,11 @@ static int render_one(struct render_job *job, bool measured, const char *path)
     return status;
 }
 
-// Exactly as many frames as were asked for; the newest is written.
+// Renders exactly as many frames as were asked for and writes the newest.
 static int render_count(struct render_job *job)
 {
     const struct render_options *options = job->options;
-    // One frame more, not measured, so that compiling shaders is not taken for rendering.
+    // One frame more, not measured, so that the times do not include compiling of shaders.
     uint32_t warm_up = options->frames > 1 && !options->converge_first ? 1 : 0;
     uint32_t count = options->frames + warm_up;
     int status = 0;

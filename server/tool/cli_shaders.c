@@ -1,4 +1,4 @@
-// voxcast shaders: has the driver compile what a scene's first frames need.
+// voxcast shaders: makes the driver compile what a scene's first frames need.
 #include <stdio.h>
 
 #include "server/accuracy/converged_frames.h"
@@ -6,11 +6,11 @@
 #include "server/tool/shot_options.h"
 #include "server/options.h"
 
-// Sides that are no powers of two, as those of nearly all views: drivers compile for that, too.
+// No powers of two, as in nearly all views: drivers compile special code for those.
 #define WIDTH  320u
 #define HEIGHT 180u
 
-// The first frame has no history; later ones reproject and average.
+// The first frame has no history; later frames reproject and average.
 #define FRAMES_PER_PRESET 3u
 
 static const char usage[] =
@@ -47,7 +47,7 @@ static bool draw(struct shot *shot, struct view *view, struct error *out_error)
 
 static bool draw_presets(struct shot *shot, struct progress *progress, struct error *out_error)
 {
-    // A client's image moves at first, then climbs to its preset.
+    // A client's view moves at first, then climbs to its preset.
     const enum quality presets[] = {QUALITY_INTERACTIVE, QUALITY_DRAFT, shot->params.quality};
     const uint32_t count = FRAMES_PER_PRESET * sizeof(presets) / sizeof(presets[0]);
     struct view *view = renderer_view_create(shot->renderer);

@@ -14,20 +14,20 @@ struct cli_shot_options {
     struct cli_settings settings;
 };
 
-// Declares --size, --gpu, --environment and the options of camera and settings; initialises them
-// but the size.
+// Declares --size, --gpu, --environment and the options of camera and settings; initializes all but
+// the size.
 void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target);
 
-// Loads the scene, prints its warnings and applies the options; there is no renderer then. `preset`
-// is the quality if none is asked for. The exit status: 0, or that of a message on stderr; then
+// Loads the scene, prints its warnings and applies the options; starts no renderer. `preset` is the
+// quality if none is asked for. Returns the exit status: 0, or that of a message on stderr; then
 // nothing needs closing.
 int cli_shot_load(const struct cli_shot_options *options, enum quality preset,
                   struct shot *out_shot);
 
-// Starts the renderer of a loaded shot. If that fails, the shot is closed.
+// Starts the renderer of a loaded shot. Closes the shot on failure.
 int cli_shot_start(const struct cli_shot_options *options, struct shot *shot);
 
-// Both.
+// Both of the above.
 int cli_shot_open(const struct cli_shot_options *options, enum quality preset,
                   struct shot *out_shot);
 

@@ -220,7 +220,7 @@ static bool read_all(struct cli_parser *parser, int argc, char **argv, bool *out
             FIRST_LETTER + (int)i};
     *out_help = false;
     opterr = 0;
-    optind = 0; // starts anew
+    optind = 0; // starts over
     int letter;
     while ((letter = getopt_long(argc, argv, "", names, NULL)) != -1) {
         *out_help = letter == HELP_LETTER;

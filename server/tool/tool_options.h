@@ -46,7 +46,7 @@ struct cli_parser {
     uint32_t option_count;
     struct cli_option options[CLI_MAX_OPTIONS];
 
-    // Results: what is no option.
+    // Results: the arguments that are no options.
     uint32_t argument_count;
     const char *arguments[CLI_MAX_ARGUMENTS];
 };
@@ -79,7 +79,7 @@ struct cli_settings {
     struct cli_sets sets;
 };
 
-// Targets keep what they hold if the option is not given; texts point into argv.
+// Targets keep their value if the option is not given. Texts point into argv.
 void cli_take_text(struct cli_parser *parser, const char *name, const char **target);
 void cli_take_flag(struct cli_parser *parser, const char *name, bool *target);
 void cli_take_count(struct cli_parser *parser, const char *name, uint32_t low, uint32_t high,
@@ -97,7 +97,7 @@ void cli_take_camera(struct cli_parser *parser, struct cli_camera *target);
 void cli_take_settings(struct cli_parser *parser, struct cli_settings *target); // initialises it
 
 // False when the command is to end with *out_status: after --help, which is printed, and after an
-// error, which is told on stderr with option, value and range.
+// error, which is reported on stderr with option, value and range.
 bool cli_parse(struct cli_parser *parser, int argc, char **argv, int *out_status);
 
 // The camera asked for, else shot_default_camera().

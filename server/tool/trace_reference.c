@@ -12,7 +12,7 @@
 #include "renderer/clock.h"
 
 #define DEFAULT_SAMPLES 64u
-// Noise is looked at after each such share more of samples.
+// The noise is estimated each time that the samples have grown by this factor.
 #define NOISE_STEP 1.25
 
 static const char *const light_names[CLI_LIGHT_COUNT] = {"all", "direct", "indirect"};

@@ -7,10 +7,10 @@
 struct cli_reference_options {
     uint32_t samples;   // per pixel; 0: as many as time and noise allow
     double time_s;      // at most; 0: no limit
-    double noise;       // goes on until the estimate is below; 0: no matter
+    double noise;       // trace until the estimate is below this; 0: do not stop by noise
     uint32_t bounces;   // of indirect light; REFERENCE_UNLIMITED if not given
     uint32_t light;     // an enum cli_reference_light
-    uint32_t bounce;    // the image of one bounce alone, 1 or more; 0: not so
+    uint32_t bounce;    // the image of this bounce alone, 1 or more; 0: of all
     uint32_t estimator; // an enum reference_estimator
     uint32_t seed, threads;
 };
@@ -18,11 +18,11 @@ struct cli_reference_options {
 enum cli_reference_light { CLI_LIGHT_ALL, CLI_LIGHT_DIRECT, CLI_LIGHT_INDIRECT, CLI_LIGHT_COUNT };
 
 // Declares --spp, --time, --noise, --bounces, --light, --bounce, --estimator, --seed and --threads,
-// and initialises them.
+// and initializes their values.
 void cli_take_reference(struct cli_parser *parser, struct cli_reference_options *target);
 
-// Renders the shot, which needs no renderer, and writes `out` and, if there, `stats`. The exit
-// status.
+// Renders the shot, which needs no renderer, and writes `out` and, unless NULL, `stats`. Returns
+// the exit status.
 int cli_render_reference(const struct cli_reference_options *options, const struct shot *shot,
                          const char *out, const char *stats);
 

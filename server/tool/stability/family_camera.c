@@ -1,4 +1,4 @@
-// Cameras where none should stand, with lenses and images that nobody would choose.
+// Cameras in places, with lenses and with image sizes that nobody would choose.
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ struct named_camera {
     struct view_camera camera;
 };
 
-// Draws the stage from one camera after the other and tells how many values were not finite.
+// Draws the stage from several cameras and counts the values that are not finite.
 static void draw_from(struct stability_run *run, struct stage *stage,
                       const struct named_camera *cameras, uint32_t count)
 {
@@ -93,7 +93,7 @@ static void run_directions(struct stability_run *run)
 
 #define PROBES 12u
 
-// Some pixels against images of one pixel that look the same way.
+// Compares some pixels with images of a single pixel that show the same direction.
 static void probe(struct stability_run *run, struct scene *scene, const struct frame_params *params,
                   const struct picture *picture)
 {
@@ -184,7 +184,7 @@ static void run_near(struct stability_run *run)
     scene_destroy(&stage.scene);
 }
 
-// Away and back: what has settled does not depend on where the camera was before.
+// The camera goes far away and back: the converged image does not depend on where it was before.
 static void run_teleport(struct stability_run *run)
 {
     struct stage stage;
@@ -194,7 +194,8 @@ static void run_teleport(struct stability_run *run)
         return;
     struct frame_params params = stability_params(run), away;
     params.camera = stage.camera;
-    // Where bounces are counted, voxels that come in take their light from settled ones: one more.
+    // A fixed number of bounces would differ: new voxels take their light from converged ones,
+    // which is one bounce more.
     params.settings.bounces = 0;
     away = params;
     away.camera = camera_at(&stage, 5000.0f, 300.0f, -7000.0f);
@@ -251,7 +252,7 @@ static const struct stability_case cases[] = {
      .invariant = "kilometres away and back, the picture settles to what it was",
      .methods = STABILITY_DRAWN,
      .bound = 0.004,
-     .voxel_bound = 0.016, // light has settled when 0.8 % are to come, in either image
+     .voxel_bound = 0.016, // light has converged when 0.8 % are still to come, in either image
      .unit = "of the brightest",
      .run = run_teleport},
 };

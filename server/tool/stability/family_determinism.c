@@ -1,5 +1,5 @@
-// The same input gives the same output, bit by bit. (Voxels against a search on the CPU:
-// tests/gpu/test_voxel_occupancy.c.)
+// The same input gives the same output, bit by bit. (tests/gpu/test_voxel_occupancy.c compares
+// voxels with a search on the CPU.)
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static void run_twice(struct stability_run *run)
     struct picture first, second;
     if (!draw_stage(run, 0, &first))
         return;
-    stability_renew(run); // neither programs nor pools are left
+    stability_renew(run); // no programs or pools are left
     if (draw_stage(run, 0, &second)) {
         compare(run, &second, &first, "the second run");
         picture_finish(&second);
@@ -34,7 +34,7 @@ static void run_twice(struct stability_run *run)
     picture_finish(&first);
 }
 
-// Puts the triangles of every primitive into another order.
+// Shuffles the triangles of every primitive.
 static void shuffle_triangles(struct scene *scene, uint64_t seed)
 {
     for (uint32_t p = 0; p < scene->primitive_count; p++) {
@@ -78,7 +78,8 @@ static void run_shuffled(struct stability_run *run)
     picture_finish(&plain);
 }
 
-// The driver reads the number of its threads once a process, so each image is another's.
+// The driver reads the number of its threads once per process, so each image needs a process of its
+// own.
 static bool draw_with_threads(struct stability_run *run, int threads, const char *folder,
                               struct picture *out_picture)
 {
@@ -150,8 +151,8 @@ static void edit(struct stage *stage, int number)
     }
 }
 
-// A frame after each edit, then until it has settled. `order` < 0: all edits before the first
-// frame.
+// A frame after each edit, then frames until it has converged. `order` < 0: all edits before the
+// first frame.
 static bool draw_edited(struct stability_run *run, int order, struct picture *out_picture)
 {
     static const int orders[2][4] = {{0, 1, 2, 3}, {3, 2, 1, 0}};
@@ -206,8 +207,8 @@ static const struct stability_case cases[] = {
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "of the brightest",
-     // Which corner a triangle is rasterised from depends on its neighbours, and so does the last
-     // digit of depth, by which pixels are placed.
+     // The corner at which rasterization of a triangle starts depends on its neighbours, and so
+     // does the last digit of depth, from which positions of pixels follow.
      .known = 5e-5,
      .run = run_shuffled},
     {.name = "same-threads",

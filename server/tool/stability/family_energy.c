@@ -1,5 +1,5 @@
-// Light is neither made nor lost. (Furnaces with every gather mode, resolution and step:
-// tests/gpu/test_gi_furnace.c.)
+// Light is neither created nor lost. (tests/gpu/test_gi_furnace.c has furnaces with every gather
+// mode, resolution and step.)
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +13,7 @@
 // Walls of the furnace.
 enum { SOLID, THIN, THIN_PIXELS };
 
-// A closed cube of 2.6 m seen from inside, all walls alike.
+// A closed cube of 2.6 m seen from inside, with equal walls.
 static bool create_box(struct stability_run *run, float albedo, float emission, struct stage *stage)
 {
     *stage = (struct stage){.scene = scene_create("box"), .scale = 1.0, .light = SCENE_NONE};
@@ -99,7 +99,7 @@ static void run_bounces(struct stability_run *run)
     }
 }
 
-// Walls that absorb nothing: there is no end of light, but there must be one of numbers.
+// Walls that absorb nothing: light grows without end, but values must stay finite.
 static void run_white(struct stability_run *run)
 {
     double mean;
@@ -109,7 +109,7 @@ static void run_white(struct stability_run *run)
 
 #define MAX_DARK_FRAMES 200u
 
-// Frames until half of the light is gone, and that all goes.
+// Frames until half of the light is gone; in the end all of it must go.
 static void run_light_out(struct stability_run *run)
 {
     struct stage stage;
@@ -138,8 +138,8 @@ static void run_light_out(struct stability_run *run)
     scene_destroy(&stage.scene);
 }
 
-// A white ball in an even white sky: no pixel brighter than the sky.
-// `variant` is its metallic.
+// A white ball in a uniform white sky: no pixel may be brighter than the sky. `variant` is its
+// metallic value.
 static void run_specular_rays(struct stability_run *run)
 {
     for (int i = 0; i < 5; i++) {
@@ -191,14 +191,14 @@ static bool stage_mean(struct stability_run *run, enum gi_method method, uint32_
     return done;
 }
 
-// What each bounce adds to the mean of the stage's image, against what it adds to the
-// reference's.
+// What each bounce adds to the mean of the stage's image, compared with what it adds to the
+// reference image.
 static void run_ratio(struct stability_run *run)
 {
     double before[2], mean[2];
     if (!stage_mean(run, GI_METHOD_NONE, 1, &before[0]))
         return;
-    before[1] = before[0]; // direct light is the same in both, which family 2 compares
+    before[1] = before[0]; // direct light counts as equal in both: the other families compare it
     for (uint32_t bounces = 1; bounces <= 3; bounces++) {
         if (!stage_mean(run, run->method, bounces, &mean[0]) ||
             !stage_mean(run, GI_METHOD_REFERENCE, bounces, &mean[1]))
@@ -222,7 +222,7 @@ static const struct stability_case cases[] = {
      .methods = STABILITY_VOXELS,
      .bound = 0.03,
      .unit = "of what is expected",
-     .known = 0.05, // slanted cones let a little of the dark outside in at each bounce
+     .known = 0.05, // slanted cones pick up some of the dark outside at each bounce
      .run = run_furnace,
      .variant = THIN},
     {.name = "energy-thin-pixels",
@@ -265,8 +265,8 @@ static const struct stability_case cases[] = {
      .methods = STABILITY_NONE,
      .bound = 0.01,
      .unit = "of the sky",
-     // The layer of glTF 2.0 keeps from the base what it reflects at the half vector, which at
-     // grazing view is far less than it reflects in all.
+     // The layer of glTF 2.0 takes from the base what it reflects at the half vector. At grazing
+     // view that is far less than all that it reflects.
      .known = 0.9,
      .run = run_specular_rays},
     {.name = "energy-per-bounce",

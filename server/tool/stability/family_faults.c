@@ -1,12 +1,12 @@
-// Faults of the machine: memory ends, shaders do not compile, the GL context is lost. What is
-// measured is how often something else came of it than a failure with a reason, or the fault left
-// the renderer unable to draw what it drew before.
+// Faults of the machine: memory ends, shaders do not compile, the GL context is lost. Counts how
+// often a fault did not lead to a failure with a reason, or left the renderer unable to draw what
+// it drew before.
 #include <string.h>
 
 #include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 
-// So many faults one after another are enough, whatever a scene needs.
+// Enough consecutive faults for any scene.
 #define MAX_FAULTS 600u
 #define MAX_TRIES  64u
 
@@ -25,7 +25,7 @@ static void note(struct faults *faults, bool good, const char *what, uint32_t nu
     stability_measure(faults->run, faults->broken, "%s, fault %u", what, number);
 }
 
-// The room as it is without faults, and a renderer that has drawn nothing yet.
+// The room drawn without faults, and a renderer that has drawn nothing yet.
 static bool faults_open(struct faults *faults, struct stability_run *run)
 {
     *faults = (struct faults){.run = run, .params = stability_params(run)};
@@ -49,7 +49,7 @@ static void faults_close(struct faults *faults)
     stability_renew(faults->run);
 }
 
-// Draws a frame and throws it away. False, with what went wrong, if that fails.
+// Draws a frame and discards it. False, with the reason, if that fails.
 static bool draw_frame(struct faults *faults, struct view *view, struct error *out_error)
 {
     struct frame_pixels pixels;
@@ -68,7 +68,7 @@ static bool draw_frame(struct faults *faults, struct view *view, struct error *o
     return collected;
 }
 
-// The image is what it was before there were faults.
+// The image is the same as before the faults.
 static void check_reference(struct faults *faults, uint32_t number)
 {
     struct picture picture;
@@ -79,8 +79,8 @@ static void check_reference(struct faults *faults, uint32_t number)
     picture_finish(&picture);
 }
 
-// Shows the scene in a new view and draws some frames, while one allocation fails. True if it was
-// reached.
+// Shows the scene in a new view and draws some frames, while one allocation fails. True if that
+// allocation was reached.
 static bool fail_allocation(struct faults *faults, uint32_t number)
 {
     struct error error = {""};
@@ -120,7 +120,7 @@ static void run_memory(struct stability_run *run)
     faults_close(&faults);
 }
 
-// One program is compiled and the next fails, until all are there.
+// One program is compiled and the next one fails, until all are there.
 static void run_programs(struct stability_run *run)
 {
     struct faults faults;

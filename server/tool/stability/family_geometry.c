@@ -1,4 +1,4 @@
-// Geometry that has no area, no direction or no place, or far too much of it, leaves everything
+// Geometry without area, direction or finite position, or far too much of it, leaves everything
 // else as it is.
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ static const float middle[3] = {-0.75f, 1.5f, -0.75f};
 
 typedef void (*add_function)(struct stage *stage);
 
-// The stage with what `add` adds; NULL for nothing.
+// Draws the stage with what `add` adds; NULL for nothing.
 static bool draw_with(struct stability_run *run, add_function add, struct picture *out_picture)
 {
     struct stage stage;
@@ -27,7 +27,7 @@ static bool draw_with(struct stability_run *run, add_function add, struct pictur
     return stage_draw(run, &stage, out_picture);
 }
 
-// What `hard` adds looks as what `plain` adds (NULL: nothing), to the last pixel.
+// What `hard` adds must look like what `plain` adds (NULL: nothing), to the last pixel.
 static void compare(struct stability_run *run, add_function hard, add_function plain)
 {
     struct picture expected, test;
@@ -38,8 +38,8 @@ static void compare(struct stability_run *run, add_function hard, add_function p
     picture_finish(&expected);
 }
 
-// Takes `truth` for all pixels next to which what `hard` adds changes direct light, by itself or by
-// its shadow: what is left are others' pixels.
+// Replaces pixels by those of `expected` next to which what `hard` adds changes direct light, by
+// itself or by its shadow. What is left are the pixels of other objects.
 static bool leave_own_pixels_out(struct stability_run *run, add_function hard, add_function plain,
                                  struct picture *test, const struct picture *expected)
 {
@@ -84,7 +84,7 @@ static void compare_others(struct stability_run *run, add_function hard, add_fun
 
 static void add_zero_area(struct stage *stage)
 {
-    // A point, a line, a line there and back.
+    // A point, a line, and a line there and back.
     struct scene_vertex v[9] = {stage_vertex(0.0f, 0.0f, 0.0f),  stage_vertex(0.0f, 0.0f, 0.0f),
                                 stage_vertex(0.0f, 0.0f, 0.0f),  stage_vertex(-0.5f, 0.0f, 0.0f),
                                 stage_vertex(0.0f, 0.25f, 0.0f), stage_vertex(0.5f, 0.5f, 0.0f),
@@ -251,8 +251,8 @@ static void tell_count(struct stability_run *run, const struct frame_statistics 
                               (unsigned long long)expected);
 }
 
-// Three triangles that are nowhere, and of 18 triangles every third has normals of NaN, every third
-// infinite ones.
+// Three triangles at no finite position. Of 18 triangles every third has normals of NaN, every
+// third infinite ones.
 static void run_counted(struct stability_run *run)
 {
     struct stage stage;
@@ -285,7 +285,7 @@ static void drop_uv(struct scene_vertex triangle[3], uint32_t number)
     }
 }
 
-// An even image, and an even normal map.
+// An image of one colour, and a flat normal map.
 static uint32_t textured(struct stage *stage)
 {
     uint32_t material = two_sided(stage);
@@ -321,7 +321,7 @@ static void run_without_uv(struct stability_run *run)
     compare(run, add_without_uv, add_textured);
 }
 
-// Balls that a voxel holds whole, so that its normals cancel.
+// Balls so small that a voxel holds all of one, so that its normals cancel.
 static void add_cancelling(struct stage *stage)
 {
     struct mesh_builder builder;
@@ -337,7 +337,7 @@ static void run_cancelling(struct stability_run *run)
     compare_others(run, add_cancelling, NULL);
 }
 
-// A closed card, a millionth of a metre thick: what faces each way cancels in every voxel.
+// A closed card, a millionth of a metre thick: opposite faces cancel in every voxel.
 static void add_card(struct stage *stage)
 {
     struct mesh_builder builder;
@@ -352,7 +352,7 @@ static void run_card(struct stability_run *run)
     compare(run, add_card, add_plain_sheet);
 }
 
-// As many fragments in each voxel as there are copies, or more.
+// At least as many fragments in each voxel as there are copies.
 #define FRAGMENT_CELLS  2u
 #define FRAGMENT_COPIES 12000u
 
@@ -386,7 +386,7 @@ static void add_mean_sheet(struct stage *stage)
     add_sheet_of(stage, 0.25f, FRAGMENT_CELLS, 1, color_by_mean, two_sided(stage));
 }
 
-// Voxels' albedo, looked at: the mean of all that is in them.
+// The albedo of voxels, as the debug view shows it: the mean of all surfaces in them.
 static void run_many_fragments(struct stability_run *run)
 {
     struct picture pictures[2] = {{0}, {0}};
@@ -409,7 +409,7 @@ static void run_many_fragments(struct stability_run *run)
     picture_finish(&pictures[1]);
 }
 
-// As long as a million voxels of the room by itself, far below it.
+// A triangle as long as a million voxels of the room, far below it.
 static void add_giant(struct stage *stage)
 {
     const float reach = 31250.0f;
@@ -423,7 +423,7 @@ static void run_giant(struct stability_run *run)
     compare(run, add_giant, NULL);
 }
 
-// Voxels cannot be as fine as they were, so that indirect light is lost; but none is added.
+// Voxels become coarser, so that indirect light may be lost; but none is added.
 static void run_giant_voxels(struct stability_run *run)
 {
     struct stability_run direct = {
@@ -442,7 +442,7 @@ static void run_giant_voxels(struct stability_run *run)
     picture_finish(&test);
 }
 
-// 707^2 x 2 triangles in a patch of 4 cm, which a voxel of 6 cm holds.
+// 707^2 x 2 triangles in a patch of 4 cm, which one voxel of 6 cm holds.
 static void add_patch(struct stage *stage, uint32_t cells)
 {
     uint32_t edge = cells + 1;

@@ -1,6 +1,5 @@
-// Files, messages and edits that mean harm, or know no measure. What is measured is how many broke
-// something: were taken though they are wrong, were refused without a reason, or left a document
-// that is not what scene.h says.
+// Hostile files, messages and edits. Counts how many broke something: were accepted though they are
+// wrong, were refused without a reason, or left a document that violates scene.h.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +20,7 @@
 #define FILE_MUTATIONS    10000u
 #define MESSAGE_MUTATIONS 20000u
 #define MAX_FILE_BYTES    (1u << 16)
-// An import that takes longer hangs, as good as.
+// An import that takes longer counts as hanging.
 #define MAX_IMPORT_MS 10000.0
 
 struct source {
@@ -29,7 +28,7 @@ struct source {
     size_t size;
 };
 
-// A file of tests/fuzz/corpus, which fuzzers start from, too.
+// Reads a file of tests/fuzz/corpus, from which the fuzzers start, too.
 static bool read_source(struct stability_run *run, const char *name, struct source *out_source)
 {
     char path[1024];
@@ -41,7 +40,7 @@ static bool read_source(struct stability_run *run, const char *name, struct sour
     return false;
 }
 
-// Mutations prove most where some are taken and some are not.
+// Mutations prove most where some are accepted and some are not.
 static void check_fraction(struct stability_run *run, const char *name, uint32_t taken,
                            uint32_t count)
 {
@@ -56,7 +55,7 @@ typedef struct scene *import_function(const void *bytes, size_t size, const char
 static const char *try_import(import_function *import, const uint8_t *bytes, size_t size,
                               uint32_t *taken_count)
 {
-    // A block of its own, so that sanitizers see what reads beyond it.
+    // A block of its own, so that sanitizers see reads beyond it.
     uint8_t *copy = malloc(size);
     if (!copy)
         return "out of memory";
@@ -164,7 +163,7 @@ static bool is_in_range(const struct parameter_value *value)
     return memchr(value->text, '\0', sizeof(value->text)) != NULL;
 }
 
-// What a message broke; NULL for nothing. `out_taken` tells whether it is a command.
+// What a message broke; NULL for nothing. `out_taken` says whether it is a command.
 static const char *try_message(const char *text, size_t size, struct command *command,
                                bool *out_taken)
 {
@@ -219,9 +218,9 @@ static void run_messages(struct stability_run *run)
     free(mutated);
 }
 
-// Numbers of a method beside its parameters, as PROTOCOL.md lists them.
+// Numbers of a method besides its parameters, as PROTOCOL.md lists them.
 static const struct number_field {
-    const char *method, *field, *others; // fields that must be there, too
+    const char *method, *field, *others; // fields that are required, too
     double min, max;
     bool whole;
 } number_fields[] = {
@@ -244,7 +243,7 @@ struct extremes {
     uint32_t broken;
 };
 
-// `good` says whether the message is to be taken.
+// `good` says whether the message must be accepted.
 static void expect(struct extremes *extremes, const char *text, bool good)
 {
     bool taken;
@@ -256,8 +255,8 @@ static void expect(struct extremes *extremes, const char *text, bool good)
                       broken ? broken : "good");
 }
 
-// What JSON has no numbers for, what is no number, and what lies far or just beyond a range or at
-// its ends. `format` is a printf format that takes the text of the number.
+// Numbers that JSON cannot express, texts that are no number, and numbers far beyond a range, just
+// beyond it and at its ends. `format` is a printf format for the number's text.
 static void try_numbers(struct extremes *extremes, const char *format, double min, double max,
                         bool whole, bool zero_is_good)
 {

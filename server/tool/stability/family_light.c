@@ -1,4 +1,4 @@
-// Lights of every strength in every place.
+// Lights of every intensity, everywhere.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -36,7 +36,7 @@ static void run_intensities(struct stability_run *run)
     picture_finish(&expected);
 }
 
-// Edits that must not be taken.
+// Edits that must be refused.
 static void run_refused(struct stability_run *run)
 {
     static const char *const values[] = {"-1", "-1e-30", "nan", "-nan", "inf", "-inf", "1e39", "x"};
@@ -59,7 +59,7 @@ static void run_refused(struct stability_run *run)
     scene_destroy(&stage.scene);
 }
 
-// A light that a program set to what is no intensity gives no light, and no NaN.
+// A light that a program set to an invalid intensity gives no light, and no NaN.
 static void run_no_intensity(struct stability_run *run)
 {
     static const float values[] = {NAN, -1.0f, INFINITY, -INFINITY};
@@ -118,7 +118,7 @@ static void run_positions(struct stability_run *run)
     scene_destroy(&stage.scene);
 }
 
-// In the closed box a light lights nothing of the room.
+// A light in the closed box lights nothing of the room.
 static void run_in_solid(struct stability_run *run)
 {
     struct stage stage;
@@ -142,7 +142,7 @@ static bool draw_spot(struct stability_run *run, enum scene_light_type type, flo
     struct stage stage;
     if (!stage_create(run, &(struct stage_params){.no_objects = true}, &stage))
         return false;
-    // Under the ceiling, so that half a turn sees all but the ceiling.
+    // Under the ceiling, so that a cone of half a turn covers all but the ceiling.
     move_light(&stage, (const float[3]){0.0f, 2.9375f, 0.0f});
     struct scene_light *light = &stage.scene->lights[stage.light];
     light->type = type;
@@ -152,7 +152,7 @@ static bool draw_spot(struct stability_run *run, enum scene_light_type type, flo
     return stage_draw(run, &stage, out_picture);
 }
 
-// Direct light only: what the ceiling sends back is another's in both.
+// Direct light only: the light that the ceiling reflects differs between the two.
 static void run_wide_spot(struct stability_run *run)
 {
     struct picture point, spot;

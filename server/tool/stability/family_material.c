@@ -1,4 +1,4 @@
-// Materials at the ends of their ranges, and light at the ends of what numbers hold.
+// Materials at the ends of their ranges, and light at the limits of numbers.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ static uint32_t add_material(struct stage *stage, const struct scene_material *m
     return scene_add_material(stage->scene, material);
 }
 
-// Balls in rows before the back wall, one of each.
+// Balls in rows before the back wall, one of each material.
 static void add_extremes(struct stage *stage)
 {
     enum { COUNT = 15 };
@@ -76,7 +76,7 @@ static void run_extremes(struct stability_run *run)
 {
     draw_extremes(run, (const float[3]){0.0f, 1.5f, 1.75f}, (const float[3]){0.0f, 1.0f, -0.5f},
                   "balls");
-    // Inside the ball of IOR 3, where nearly all is reflected totally.
+    // Inside the ball of IOR 3, where nearly all light is totally reflected.
     draw_extremes(run, (const float[3]){0.625f, 2.0f, -0.75f}, (const float[3]){1.0f, 1.0f, 1.0f},
                   "inside-glass");
 }
@@ -103,7 +103,7 @@ static void run_grazing(struct stability_run *run)
     }
 }
 
-// Two-sided sheets before everything, one behind the other.
+// Two-sided sheets in front of everything, one behind the other.
 static void add_sheets(struct stage *stage, const struct scene_material *material, int count,
                        float uv_offset)
 {
@@ -186,7 +186,7 @@ static struct scene_material make_glowing(float strength)
     return glowing;
 }
 
-// Two black walls that emit: the image has just their radiance.
+// Two black emitting walls: the image has exactly their radiance.
 static void run_emission(struct stability_run *run)
 {
     static const float strengths[2] = {1e6f, 1e-3f};
@@ -300,8 +300,8 @@ static const struct stability_case cases[] = {
      .invariant = "three sheets of alpha 0, one behind the other, change no pixel",
      .methods = STABILITY_ALL,
      .bound = 0.004,
-     .voxel_bound = 0.01,     // the ball has some that a sheet is in, too
-     .reference_bound = 0.01, // by chance, where rays begin anew behind a sheet
+     .voxel_bound = 0.01,     // a sheet shares some of the ball's voxels
+     .reference_bound = 0.01, // by chance, where rays start anew behind a sheet
      .unit = OF_BRIGHTEST,
      .run = run_clear,
      .variant = 0},
@@ -309,14 +309,14 @@ static const struct stability_case cases[] = {
      .invariant = "a blended sheet of alpha 1 looks as an opaque one",
      .methods = STABILITY_ALL,
      .bound = 0.004,
-     .voxel_bound = 0.06, // opaque pixels share their look-ups two by two
+     .voxel_bound = 0.06, // pairs of opaque pixels share their look-ups
      .unit = OF_BRIGHTEST,
      .run = run_opaque},
     {.name = "material-transmission",
      .invariant = "three sheets of transmission 1 and IOR 1, one behind the other, change no pixel",
      .methods = STABILITY_ALL,
      .bound = 0.004,
-     .voxel_bound = 0.01, // likewise, both
+     .voxel_bound = 0.01, // both for the same reasons
      .reference_bound = 0.01,
      .unit = OF_BRIGHTEST,
      .run = run_clear,

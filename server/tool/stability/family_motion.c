@@ -1,6 +1,6 @@
-// What moves leaves nothing behind, and what does not move does not flicker. (Voxels filled step by
-// step against voxels filled at once, over walks of hundreds of steps:
-// tests/gpu/test_voxel_walks.c.)
+// Motion leaves nothing behind, and what does not move does not flicker.
+// (tests/gpu/test_voxel_walks.c compares voxels filled step by step with voxels filled at once,
+// over walks of hundreds of steps.)
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,7 @@ static uint32_t next_random(uint64_t *state)
     return (uint32_t)(*state >> 33);
 }
 
-// Box and glowing ball somewhere on the floor.
+// Moves the box and the glowing ball to a position on the floor.
 static void add_objects(struct stage *stage, uint64_t *state)
 {
     static const float whole[3] = {1.0f, 1.0f, 1.0f};
@@ -47,7 +47,7 @@ static bool create_glowing(struct stability_run *run, struct stage *stage)
     return true;
 }
 
-// Many steps with a frame each, then until it has settled; or the last step alone.
+// Many steps with a frame each, then frames until it has converged; or the last step alone.
 static bool draw_walk(struct stability_run *run, bool walks, struct picture *out_picture)
 {
     struct stage stage;
@@ -99,8 +99,8 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Differences of shown values between frames of a camera that slides along a wall by a pixel a
-// step: so each surface point is in the middle of a pixel in every frame. In 1/255.
+// Differences of displayed values between frames of a camera that slides along a wall by one pixel
+// a step, so that each surface point is in the centre of a pixel in every frame. In 1/255.
 static size_t add_changes(const struct display_params *display, const struct picture *before,
                           const struct picture *after, double *changes)
 {

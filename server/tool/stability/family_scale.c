@@ -1,4 +1,4 @@
-// The image does not depend on the unit that a scene is in, nor on where it stands.
+// The image depends neither on the unit of a scene nor on its position.
 #include <math.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@ static bool draw_stage(struct stability_run *run, const struct stage_params *pla
     return stage_create(run, placement, &stage) && stage_draw(run, &stage, out_picture);
 }
 
-// Tells how far the stage looks from what it looks like in its usual place.
+// Measures how far the stage looks from the same stage in its usual position.
 static void compare_positions(struct stability_run *run, const struct stage_params *placements,
                               uint32_t count, const char *const *names)
 {
@@ -50,7 +50,7 @@ static void run_moved(struct stability_run *run)
     compare_positions(run, placements, 2, names);
 }
 
-// Voxels of the stage, looked at.
+// Voxels of the stage, as a debug view shows them.
 static bool draw_voxels(struct stability_run *run, enum debug_view view, const double offset[3],
                         struct picture *out_picture)
 {
@@ -69,7 +69,7 @@ static bool draw_voxels(struct stability_run *run, enum debug_view view, const d
     return done;
 }
 
-// `variant`: 0 counts what has changed of what is in voxels; 1 tells how much their light has.
+// `variant`: 0 compares what is in voxels; 1 compares their light.
 static void run_moved_voxels(struct stability_run *run)
 {
     static const double here[3] = {0.0, 0.0, 0.0}, there[3] = {3.0, -1.0, 2.0};
@@ -94,9 +94,9 @@ static void run_moved_voxels(struct stability_run *run)
 #define DEPTH_ALBEDO 0.5
 
 // A square of D x D m that faces the camera at D m, lit by a light D / 4 in front of it: how far
-// its pixels are from what the inverse square and the cosine give. The light depends on places that
-// are found from depth, and errs by about eight times their error. With `reach`, a speck far behind
-// makes the scene so large.
+// its pixels are from the inverse square times the cosine. The light depends on positions that are
+// found from depth, and errs by about eight times their error. With `reach`, a speck that far
+// behind enlarges the scene.
 static void measure_depth(struct stability_run *run, double distance, double reach)
 {
     struct stage stage = {.scene = scene_create("square"), .scale = 1.0};

@@ -1,6 +1,6 @@
-// Light stays in its room. Two closed rooms share a wall; a light lights one. What the camera in
-// the other sees, over what it sees in the lit one. A voxel is the longest edge of the bounds
-// over 64.
+// Light stays in its room. Two closed rooms share a wall; a light is in one of them. Measures what
+// the camera in the dark room sees over what it sees in the lit one. A voxel is the longest edge of
+// the bounds over 64.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static void turned(const struct rooms *rooms, const float vector[3], float out_v
     glm_quat_rotatev(rotation, (float *)vector, out_vector);
 }
 
-// Some placement of a wall; the first is along the axes.
+// Orientations of a wall; the first is along the axes.
 static struct rooms rooms_of(int number, float wall_voxels)
 {
     return (struct rooms){.wall_voxels = wall_voxels,
@@ -50,7 +50,7 @@ static void add_inside(struct mesh_builder *builder, const float low[3], const f
     }
 }
 
-// Half the longest edge of the bounds of the turned cube, as the voxels see it.
+// Half the longest edge of the bounds of the rotated cube, as voxels cover it.
 static float half_bounds(const struct rooms *rooms)
 {
     float maximum = 0.0f;
@@ -93,7 +93,7 @@ static struct scene *create_rooms(const struct rooms *rooms)
     return scene;
 }
 
-// Mean of what the camera in a room sees: 0 is lit.
+// Mean of what the camera in a room sees: 0 is the lit room.
 static bool room_mean(struct stability_run *run, const struct rooms *rooms, int room,
                       enum quality quality, double *out_mean)
 {
@@ -108,7 +108,7 @@ static bool room_mean(struct stability_run *run, const struct rooms *rooms, int 
     turned(rooms, (const float[3]){0.0f, 1.0f, 0.0f}, params.camera.up);
     params.camera.fov_y_rad = 1.7f;
     params.width = params.height = 24;
-    // Rays find what leaks into voxels with the second bounce.
+    // With rays, what leaks into voxels arrives with the second bounce.
     params.settings.bounces = quality == QUALITY_INTERACTIVE ? 1 : 2;
     params.settings.clip_levels = 0;
     params.quality = quality;

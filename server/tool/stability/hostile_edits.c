@@ -1,4 +1,4 @@
-// Edits of people who mean no harm but know no measure.
+// Random edits, as many users might make them.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -12,19 +12,19 @@
 #include "server/tool/stability/scene_check.h"
 #include "server/tool/stability/stage.h"
 
-// Sanitizers take five times as long for each.
+// Sanitizers take five times as long for each edit.
 #ifdef VOXCAST_SANITIZED
 #define SEQUENCES 10000u
 #else
 #define SEQUENCES 100000u
 #endif
 #define MAX_EDITS 5u
-// The document starts anew after so many, so that it stays small.
+// After this many edits the document starts anew, so that it stays small.
 #define SEQUENCES_OF_DOCUMENT 64u
 #define CLIENTS               2u
 #define MAX_NUMBERS           8192u
 
-// The values of a document: what can be set, but for lights' places, which follow their nodes.
+// All values of a document that can be set, except lights' positions, which follow their nodes.
 struct snapshot_of_values {
     uint32_t count;
     double numbers[MAX_NUMBERS];
@@ -50,7 +50,7 @@ static void note(struct desk *desk, const char *broken)
                       broken ? broken : "good");
 }
 
-// Nodes within nodes, some with lights, and a few materials.
+// Nested nodes, some with lights, and a few materials.
 static bool desk_open(struct desk *desk)
 {
     struct scene *scene = desk->scene = scene_create_builtin("cornell", &(struct error){""});
@@ -85,7 +85,7 @@ static bool is_owned_placement(const struct parameter *parameter)
            (strcmp(parameter->name, "position") == 0 || strcmp(parameter->name, "direction") == 0);
 }
 
-// Whether the place of a node may have been found by way of that of a light.
+// Whether the placement of a node may have been computed from that of a light.
 static bool is_placement_of_light(const struct scene *scene, const struct parameter *parameter,
                                   uint32_t id)
 {
@@ -101,7 +101,7 @@ static double number_of_text(const char *text)
     return (double)(sum & 0xffffffffffff);
 }
 
-// Where a light is put, its node may lie beyond what it can be set to itself.
+// Where a light is moved, its node may lie beyond the range of its own parameters.
 static bool is_finite_and_in_range(const struct parameter_value *value, bool of_light)
 {
     const struct parameter *parameter = value->parameter;
@@ -148,8 +148,8 @@ static const char *take_values(struct desk *desk, struct snapshot_of_values *out
     return out->count + 5 < MAX_NUMBERS ? broken : "too many values for this test";
 }
 
-// Rotations are made unit length each time, which may turn their last bits. Lights that have been
-// added stay as removed ones, at the end of their lists.
+// Rotations are normalized each time, which may change their last bits. Added lights stay as
+// removed ones, at the end of their lists.
 static bool are_same(const struct snapshot_of_values *a, const struct snapshot_of_values *b)
 {
     if (a->count != b->count)
@@ -222,7 +222,8 @@ static void fill_command(struct desk *desk)
         command->target = random_below(&desk->random, document_count(&desk->document, group));
 }
 
-// Whether it was done. What it refuses, such as a light that is gone, it must give a reason for.
+// Whether the edit was accepted. A refused edit, such as of a light that is gone, must give a
+// reason.
 static bool apply(struct desk *desk, uint32_t client)
 {
     struct rpc_error error = {0};
@@ -245,7 +246,7 @@ static void repeat(struct desk *desk, uint32_t client, enum method method, uint3
     }
 }
 
-// Edits by one client, taken back and made again.
+// Edits by one client, undone and redone.
 static void run_alone(struct desk *desk, uint32_t client)
 {
     uint32_t edits = 1 + random_below(&desk->random, MAX_EDITS), done = 0;
@@ -256,7 +257,7 @@ static void run_alone(struct desk *desk, uint32_t client)
         done += apply(desk, client);
     }
     note(desk, take_values(desk, &desk->after));
-    bool added = desk->scene->light_count > lights; // ids that were not there before
+    bool added = desk->scene->light_count > lights; // ids that did not exist before
     repeat(desk, client, METHOD_EDIT_UNDO, done);
     note(desk, take_values(desk, &desk->again));
     if (!added && !are_same(&desk->before, &desk->again))
@@ -267,7 +268,7 @@ static void run_alone(struct desk *desk, uint32_t client)
         note(desk, "making edits again makes another document");
 }
 
-// Both clients edit, take back and make again as they like.
+// Both clients edit, undo and redo in any order.
 static void run_together(struct desk *desk)
 {
     for (uint32_t i = 0; i < 2 * MAX_EDITS; i++) {
@@ -308,7 +309,7 @@ void hostile_run_edits(struct stability_run *run)
     free(desk);
 }
 
-// What is dragged, and is no choice of how to draw, which other families go through.
+// Parameters that are dragged, except choices of how to draw, which other families cover.
 static bool is_drawn(const struct parameter *parameter)
 {
     return parameter->min < parameter->max && parameter->group != GROUP_ANIMATION &&

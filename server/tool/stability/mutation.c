@@ -6,7 +6,7 @@
 #define MAX_MUTATIONS 4u
 #define MAX_RANGE     64u
 
-// What stands in text instead of a number.
+// Text in place of a number.
 static const char *const numbers[] = {
     "-1",    "0",    "-0",         "1e38",       "-1e38",      "1e308", "1e-320",
     "1e999", "0.5",  "2147483647", "2147483648", "4294967295", "NaN",   "9007199254740993",
@@ -37,14 +37,14 @@ double random_unit(struct random_numbers *random)
     return (double)(random_bits(random) >> 11) * 0x1p-53;
 }
 
-// Replaces `length` bytes at a place by others. Nothing happens where there is no room.
+// Replaces `length` bytes at an offset by others. Does nothing where there is no room.
 static size_t replace(uint8_t *bytes, size_t size, size_t capacity, size_t at, size_t length,
                       const void *by, size_t by_length)
 {
     if (size - length + by_length > capacity)
         return size;
     uint8_t copy[MAX_RANGE];
-    memcpy(copy, by, by_length); // it may lie within
+    memcpy(copy, by, by_length); // `by` may lie within the buffer
     memmove(bytes + at + by_length, bytes + at + length, size - at - length);
     memcpy(bytes + at, copy, by_length);
     return size - length + by_length;

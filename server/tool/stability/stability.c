@@ -14,7 +14,7 @@
 #include "server/tool/cli.h"
 
 #define MAX_FRAMES 400u
-// Of a reference, a pixel: as many in each image, so that they differ by what the scenes do.
+// Samples of a reference, per pixel: the same in each image, so that only the scenes differ.
 #define REFERENCE_SAMPLES 16u
 
 double stability_bound(const struct stability_run *run)
@@ -133,7 +133,7 @@ void stability_view_close(struct stability_view *view)
     picture_finish(&view->picture);
 }
 
-// Fails the run if there is any value that is not finite.
+// Fails the run if any value is not finite.
 static void check_finite(struct stability_view *view)
 {
     struct stability_run *run = view->run;
@@ -150,7 +150,7 @@ static void check_finite(struct stability_view *view)
     }
 }
 
-// How many values were cut in voxels, as the statistics tell.
+// How many values were clamped in voxels, as the statistics count them.
 static void note_cuts(struct stability_view *view)
 {
     struct stability_run *run = view->run;
@@ -162,7 +162,7 @@ static void note_cuts(struct stability_view *view)
             run->cut_values = statistics.rejects[i].count;
 }
 
-// Pixels of FRAME_OUTPUT_LINEAR, which must be finite and not negative, or of bytes over 255.
+// Pixels of FRAME_OUTPUT_LINEAR, which must be finite and not negative, or bytes over 255.
 static bool take_picture(struct stability_view *view, const struct frame_pixels *pixels)
 {
     picture_finish(&view->picture);
@@ -244,7 +244,7 @@ static bool take_reference(struct stability_run *run, struct reference *referenc
     return true;
 }
 
-// Without a view, which would show it with as many samples as there was time for.
+// Traced without a view: a view would show as many samples as time allowed.
 static bool trace_reference(struct stability_run *run, struct scene *scene,
                             const struct frame_params *params, struct picture *out_picture)
 {
@@ -297,7 +297,7 @@ void stability_keep(struct stability_run *run, const struct picture *picture, co
     char path[4096];
     snprintf(file, sizeof(run->pictures[0]), "%s-%s-%s.png", run->test->name,
              gi_method_names[run->method], name);
-    bool kept = false; // already under this name: the newer takes its place
+    bool kept = false; // already under this name: the newer one replaces it
     for (uint32_t i = 0; i < run->picture_count; i++)
         kept |= strcmp(run->pictures[i], file) == 0;
     snprintf(path, sizeof(path), "%s/%s", run->suite->folder, file);

@@ -10,8 +10,8 @@ struct stability {
     const char *gpu;
     const char *folder; // NULL for none
     struct renderer *renderer;
-    uint64_t gl_errors;                    // of the renderer, told already
-    struct picture usual[GI_METHOD_COUNT]; // of the usual stage, once drawn; owned
+    uint64_t gl_errors;                    // of the renderer, reported already
+    struct picture usual[GI_METHOD_COUNT]; // of the default stage, once drawn; owned
     char gl_renderer[128];
     double seconds;
     uint32_t run_count, failures, known;

@@ -1,4 +1,4 @@
-// How far images are from each other.
+// Differences between images.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

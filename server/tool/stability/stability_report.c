@@ -1,4 +1,4 @@
-// Which cases are run, and how they are told: a table on stdout, results.json in the folder.
+// Which cases run, and how results are reported: a table on stdout, results.json in the folder.
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "renderer/metrics/picture.h"
 #include "server/tool/stability/stability_internal.h"
 
-// "holds", "known" (misses its bound, but not what it is held to meanwhile) or "fails".
+// "holds", "known" (misses its bound, but not the value that it is held to meanwhile) or "fails".
 static const char *state_of(const struct stability_run *run)
 {
     if (run->failed || !run->measured_any)
@@ -123,7 +123,7 @@ bool stability_write_results(const struct stability *suite, struct error *out_er
     return done || error_set(out_error, "cannot write \"%s\": %m", path);
 }
 
-// The folder and those that it lies in.
+// Creates the folder and its parents.
 static bool make_folders(const char *folder)
 {
     char path[4096];

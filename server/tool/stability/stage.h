@@ -1,5 +1,5 @@
-// The stage that cases are set on: a closed room with a box, a glossy ball and a light. All places
-// are multiples of 1/16 m, so that floats hold them as far as 10^6 m from the origin.
+// The stage of most cases: a closed room with a box, a glossy ball and a light. All positions are
+// multiples of 1/16 m, so that floats hold them as far as 10^6 m from the origin.
 #ifndef VOXCAST_SERVER_TOOL_STABILITY_STAGE_H
 #define VOXCAST_SERVER_TOOL_STABILITY_STAGE_H
 
@@ -8,9 +8,9 @@
 #include "server/tool/stability/stability.h"
 
 struct stage_params {
-    double scale;     // of everything; 0 is 1. The image is to stay the same
-    double offset[3]; // m, of everything, behind the scale
-    float light_cd;   // before the scale; 0: the usual one
+    double scale;     // of everything; 0 means 1. The image must stay the same
+    double offset[3]; // m, of everything, applied after the scale
+    float light_cd;   // before the scale; 0: the default
     bool no_light;
     bool no_objects; // the room alone
 };
@@ -29,25 +29,25 @@ struct stage {
 bool stage_create(struct stability_run *run, const struct stage_params *params,
                   struct stage *out_stage);
 
-// A node on the stage that carries what is in the builder.
+// Adds a node to the stage that carries what is in the builder.
 uint32_t stage_add(struct stage *stage, struct mesh_builder *builder, uint32_t material,
                    const float stage_position[3]);
 
-// The same of triangles as they are, with their own vertices; 3 a triangle.
+// The same for triangles as they are, with their own vertices, 3 a triangle.
 uint32_t stage_add_triangles(struct stage *stage, const struct scene_vertex *vertices,
                              uint32_t triangle_count, uint32_t material,
                              const float stage_position[3]);
 
-// A vertex that is fine: white, facing up.
+// A valid vertex: white, facing up.
 struct scene_vertex stage_vertex(float x, float y, float z);
 
-// From the stage's metres to the world.
+// Converts the stage's metres to world units.
 void stage_to_world(const struct stage *stage, const float stage_position[3], float out_world[3]);
 
-// As stability_draw(), from the stage's camera with the usual parameters; destroys the scene.
+// As stability_draw(), from the stage's camera with the usual parameters. Destroys the scene.
 bool stage_draw(struct stability_run *run, struct stage *stage, struct picture *out_picture);
 
-// The same of the usual stage, which is drawn once and then remembered.
+// The same for the default stage, which is drawn once and then kept.
 bool stage_draw_usual(struct stability_run *run, struct picture *out_picture);
 
 #endif
