@@ -137,7 +137,7 @@ static bool check_number(const struct field *field, const cJSON *item, struct rp
     return false;
 }
 
-// The place of a text in a list that NULL ends, or the list's length.
+// The index of a text in a list that NULL ends, or the list's length.
 static uint32_t find_choice(const char *const *choices, const cJSON *item)
 {
     uint32_t i = 0;

@@ -1,4 +1,4 @@
-// The methods of the protocol and their parameters, checked and turned into plain data. Pure.
+// The methods of the protocol: parameters are checked and turned into plain data. Pure.
 #ifndef VOXCAST_PROTOCOL_COMMAND_H
 #define VOXCAST_PROTOCOL_COMMAND_H
 
@@ -73,7 +73,7 @@ struct command {
     char source[PROTOCOL_MAX_SOURCE_BYTES + 1]; // also `name` of environment.load
     uint32_t value_count;
     struct parameter_value values[COMMAND_MAX_VALUES];
-    uint32_t superseded_count; // edit ids that this command stands for beside its own
+    uint32_t superseded_count; // edit ids that this command stands for, besides its own
     uint64_t superseded[COMMAND_MAX_SUPERSEDED];
 };
 
@@ -83,12 +83,12 @@ uint32_t method_get_flags(enum method method);
 // The group that `set` of this method takes, or GROUP_COUNT.
 enum parameter_group method_get_group(enum method method);
 
-// Checks method and params. On failure `out_command` is undefined but for its id.
+// Checks method and params. On failure `out_command` is undefined except its id.
 bool command_parse(const struct rpc_request *request, struct command *out_command,
                    struct rpc_error *out_error);
 
-// Whether `newer` makes `older` needless: a method that merges, the same client, target and set of
-// fields.
+// Whether `newer` makes `older` unnecessary: a method that merges, and the same client, target and
+// set of fields.
 bool command_supersedes(const struct command *newer, const struct command *older);
 
 #endif

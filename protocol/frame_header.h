@@ -9,7 +9,7 @@
 #define FRAME_HEADER_BYTES 104u
 
 enum frame_flags {
-    FRAME_CONVERGED = 1, // no better image of this state will come unasked
+    FRAME_CONVERGED = 1, // no better image of this state will follow
 };
 
 struct frame_header {
@@ -33,15 +33,15 @@ struct frame_header {
     uint32_t send_wait_us;
     uint64_t draw_at_us; // monotonic clock
     uint64_t sent_at_us;
-    uint32_t reference_samples; // per pixel, of a reference's image; else 0
+    uint32_t reference_samples; // per pixel, of a reference image; else 0
     float reference_noise;      // standard error of a pixel over the mean luminance; 0: unknown
 };
 
 // Writes FRAME_HEADER_BYTES bytes.
 void frame_header_encode(const struct frame_header *header, uint8_t *out);
 
-// False if `bytes` do not begin with a header, or the header says more bytes than there are.
-// `out_jpeg_offset` is where the JPEG begins.
+// False if `bytes` do not begin with a header, or if the header announces more bytes than there
+// are. `out_jpeg_offset` is where the JPEG begins.
 bool frame_header_decode(const uint8_t *bytes, size_t length, struct frame_header *out_header,
                          size_t *out_jpeg_offset);
 

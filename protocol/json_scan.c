@@ -49,7 +49,7 @@ static bool is_digit(int c)
     return c >= '0' && c <= '9';
 }
 
-// Reads the four hexadecimal digits of a \u escape at `at`; -1 if they are not there.
+// Reads the four hexadecimal digits of a \u escape at `at`; -1 if they are missing.
 static int32_t read_hex4(const struct scan *scan, size_t at)
 {
     if (at + 4 > scan->length)
@@ -201,7 +201,8 @@ static bool scan_key(struct scan *scan)
     return true;
 }
 
-// After a value: closes what ends here. False when done or failed; `*depth` is 0 when done.
+// After a value: closes the objects and arrays that end here. False when done or failed; `*depth`
+// is 0 when done.
 static bool close_containers(struct scan *scan, const char *closers, size_t *depth)
 {
     while (*depth > 0) {
@@ -219,7 +220,7 @@ static bool close_containers(struct scan *scan, const char *closers, size_t *dep
     return false;
 }
 
-// Opens an object or array. An empty one is closed at once and `*opened` is false.
+// Opens an object or array. An empty one is closed at once, and `*opened` is false.
 static bool open_container(struct scan *scan, char *closers, size_t *depth, bool *opened)
 {
     char closer = peek(scan) == '{' ? '}' : ']';

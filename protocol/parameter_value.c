@@ -135,7 +135,7 @@ bool parameter_value_from_json(const struct parameter *parameter, const cJSON *i
     return fine;
 }
 
-// `0,1,0` to an array of numbers; NULL if it is not one.
+// Turns `0,1,0` into an array of numbers; NULL if it is not one.
 static cJSON *array_from_text(const char *text)
 {
     cJSON *array = cJSON_CreateArray();
@@ -178,7 +178,7 @@ bool parameter_value_from_text(const struct parameter *parameter, const char *te
                                struct parameter_value *out_value, struct rpc_error *out_error)
 {
     cJSON *item = item_from_text(parameter, text);
-    // What does not read as the type is refused as the string that it is.
+    // Text that cannot be read as the type is passed on as a string, which is then refused.
     if (!item)
         item = cJSON_CreateString(text);
     bool fine = parameter_value_from_json(parameter, item, out_value, out_error);

@@ -8,12 +8,12 @@
 
 struct parameter_value {
     const struct parameter *parameter;
-    double numbers[4];                      // components; bool 0 or 1; enum: place in `values`
+    double numbers[4];                      // components; bool: 0 or 1; enum: index in `values`
     char text[PROTOCOL_MAX_NAME_BYTES + 1]; // of a string
 };
 
-// Both refuse what is of another type, not finite or out of range, naming field, value and range
-// in `out_error`, and leave `out_value` untouched then.
+// Both refuse values of another type, values that are not finite, and values out of range. They
+// name field, value and range in `out_error` and leave `out_value` untouched.
 bool parameter_value_from_json(const struct parameter *parameter, const struct cJSON *item,
                                struct parameter_value *out_value, struct rpc_error *out_error);
 

@@ -17,7 +17,7 @@ const char *const parameter_type_names[PARAMETER_TYPE_COUNT] = {
     "float", "int", "bool", "enum", "string", "vec3", "color", "color_alpha", "quaternion",
 };
 
-// The constants that rows name; the renderer has them from the same lists.
+// The constants that rows name. The renderer has them from the same lists.
 #define ENUM_BEGIN(name)           enum name {
 #define ENUM_VALUE(constant, text) constant,
 #define ENUM_END(name, count)                                                                      \
@@ -40,10 +40,10 @@ const char *const parameter_type_names[PARAMETER_TYPE_COUNT] = {
 #undef ENUM_VALUE
 #undef ENUM_END
 
-// Two records of the table are one group.
+// Two records of the table belong to one group.
 #define GROUP_LIGHT_PLACEMENT GROUP_LIGHT
 
-// What stands in the columns of a row.
+// The columns of a row.
 #define TYPE_FLOAT       .type = PARAMETER_FLOAT
 #define TYPE_INT         .type = PARAMETER_INT
 #define TYPE_BOOL        .type = PARAMETER_BOOL
@@ -145,7 +145,7 @@ static cJSON *default_to_json(const struct parameter *parameter)
     return parameter_value_to_json(&value);
 }
 
-// The values that will do, as JSON has them.
+// The allowed values, as JSON.
 static cJSON *need_values_to_json(const struct parameter *needed, uint32_t values)
 {
     cJSON *array = cJSON_CreateArray();
@@ -164,7 +164,7 @@ static cJSON *needs_to_json(const struct parameter *parameter)
     for (uint32_t i = 0; i < PARAMETER_MAX_NEEDS && parameter->needs[i].name; i++) {
         const struct parameter_need *need = &parameter->needs[i];
         const struct parameter *needed = parameter_find(parameter->group, need->name);
-        assert(needed); // a test looks all of them up
+        assert(needed); // a test looks up all of them
         cJSON *object = cJSON_CreateObject();
         cJSON_AddStringToObject(object, "name", need->name);
         cJSON_AddItemToObject(object, "in", need_values_to_json(needed, need->values));

@@ -38,16 +38,17 @@ enum parameter_type {
 
 enum parameter_flags {
     PARAMETER_LIVE = 1,    // a uniform or a table entry: dragging it rebuilds nothing
-    PARAMETER_NONZERO = 2, // a vector that must have a length
+    PARAMETER_NONZERO = 2, // a vector that must not be zero
 };
 
 #define PARAMETER_MAX_NEEDS 2u
 
-// What another parameter of the group must be for this one to have an effect.
+// What another parameter of the group must be so that this one has an effect.
 struct parameter_need {
     const char *name; // NULL: none
-    uint32_t values;  // that will do: a bit for each place in `values` of an enum; bit 1 of a bool
-    const char *reason; // why this one rests where it is none of them, for people
+    uint32_t values; // those that are enough: a bit for each index in `values` of an enum; bit 1 of
+                     // a bool
+    const char *reason; // shown to people where the other parameter has none of these values
 };
 
 struct parameter {
@@ -55,7 +56,7 @@ struct parameter {
     const char *name;
     enum parameter_type type;
     uint32_t flags;
-    double min, max, step;     // of each component; 0, 0, 0 where the type has no range
+    double min, max, step;     // of each component; 0, 0, 0 for types without a range
     const char *unit;          // "" for none
     double fallback[4];        // the default, as the numbers of struct parameter_value
     const char *const *values; // of an enum, ended by NULL; else NULL

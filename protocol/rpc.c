@@ -39,8 +39,8 @@ bool rpc_error_field(struct rpc_error *error, const char *field, const cJSON *va
     return false;
 }
 
-// True unless an object somewhere below holds a key twice. Recursion is bounded by the depth that
-// json_scan() lets through.
+// True unless an object at any depth holds a key twice. Recursion is bounded by the depth that
+// json_scan() allows.
 static bool keys_are_unique(const cJSON *item)
 {
     for (const cJSON *child = item->child; child; child = child->next) {
@@ -136,7 +136,8 @@ static char *print_and_delete(cJSON *message)
 {
     char *text = cJSON_PrintUnformatted(message);
     cJSON_Delete(message);
-    // Names from files, and texts cut to fit a buffer, may not be valid; a browser would hang up.
+    // Names from files, and texts cut to fit a buffer, may be invalid UTF-8, on which a browser
+    // would close the connection.
     if (text)
         utf8_repair(text);
     return text;

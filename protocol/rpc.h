@@ -1,4 +1,4 @@
-// JSON-RPC 2.0: takes requests apart and writes replies, errors and notifications. Pure.
+// JSON-RPC 2.0: parses requests and writes replies, errors and notifications. Pure.
 #ifndef VOXCAST_PROTOCOL_RPC_H
 #define VOXCAST_PROTOCOL_RPC_H
 
@@ -27,7 +27,7 @@ struct rpc_error {
     char message[512];
     char field[64]; // "" when no field is at fault
     char value[64]; // JSON as sent, cut
-    bool has_range; // min and max hold
+    bool has_range; // min and max are valid
     double min, max;
     const char *const *allowed; // ended by NULL; NULL for none
 };
@@ -40,7 +40,7 @@ bool rpc_error_set(struct rpc_error *error, int code, const char *format, ...)
 bool rpc_error_field(struct rpc_error *error, const char *field, const struct cJSON *value,
                      const char *format, ...) __attribute__((format(printf, 4, 5)));
 
-// A JSON-RPC id as JSON text; "" in a notification.
+// A JSON-RPC id as JSON text; "" for a notification.
 struct rpc_id {
     char json[PROTOCOL_MAX_ID_BYTES + 3];
 };
@@ -52,14 +52,14 @@ struct rpc_request {
     struct cJSON *root;         // owned; free with rpc_request_finish()
 };
 
-// Scans, parses and checks one message. On failure the request needs no finish, `out_error` says
-// why, and `out_request->id` holds the id if it could be read, else "null".
+// Scans, parses and checks one message. On failure the request needs no finish, `out_error` holds
+// the reason, and `out_request->id` holds the id if it could be read, else "null".
 bool rpc_request_parse(const char *text, size_t length, struct rpc_request *out_request,
                        struct rpc_error *out_error);
 void rpc_request_finish(struct rpc_request *request);
 
-// Each returns text from malloc that the caller frees with free(), or NULL when out of memory, and
-// takes over `result` or `params`.
+// Each takes over `result` or `params` and returns text from malloc, which the caller frees with
+// free(), or NULL when out of memory.
 char *rpc_write_result(const struct rpc_id *id, struct cJSON *result);
 char *rpc_write_error(const struct rpc_id *id, const struct rpc_error *error);
 char *rpc_write_notification(const char *method, struct cJSON *params);

@@ -1,10 +1,9 @@
-// Shows that a change alters nothing that is drawn. `bit_equal keep FOLDER [SCENE...]` draws scenes
-// with all presets, methods, debug views and settings and keeps the images as floats;
-// `bit_equal compare FOLDER [SCENE...]` of another build draws them again and fails unless every
-// bit is the same. Without scenes: the built-in ones, and the files below $VOXCAST_SCENES.
+// Shows that a change does not alter any image. `bit_equal keep FOLDER [SCENE...]` draws scenes
+// with all presets, methods, debug views and settings and keeps the images as floats. `bit_equal
+// compare FOLDER [SCENE...]` of another build draws them again and fails unless every bit is the
+// same. Without scenes: the built-in ones, and the files below $VOXCAST_SCENES.
 //
-// Images are 48x27: what is compared is the code that runs, and all of it runs for few pixels,
-// too.
+// Images are 48x27: few pixels run all of the code, too.
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>
@@ -23,7 +22,7 @@
 #define SOURCE_SIZE 512u
 // Of a path-traced image.
 #define SAMPLES 2u
-// Of the irradiance cache, in a frame: times that are measured must not decide.
+// Budget of the irradiance cache in a frame: measured times must not decide it.
 #define TRACE_BUDGET 20000u
 
 static const char usage[] = "usage: bit_equal keep|compare FOLDER [SCENE...]\n";
@@ -316,7 +315,7 @@ static void trace_paths(struct session *session)
     snapshot_release(&params.scene);
 }
 
-// Files get fewer images: what differs from the built-in scenes is what is read.
+// Scene files get fewer images: they differ from the built-in scenes only in what is read.
 static void draw_few(struct session *session)
 {
     const struct shot shots[] = {
@@ -346,7 +345,7 @@ static void draw_source(struct session *session, const char *source)
     make_label(source, label);
     session->label = label;
     session->scene = scene_load(source, &error);
-    // What cannot be read, both builds refuse: others' tests.
+    // Both builds refuse what cannot be read; other tests cover that.
     if (!session->scene)
         return;
     uint32_t failed_before = session->failed_count;
@@ -388,7 +387,7 @@ static void list_files(const char *folder, char (*sources)[SOURCE_SIZE], uint32_
         char path[SOURCE_SIZE];
         struct stat status;
         int length = snprintf(path, sizeof(path), "%s/%s", folder, name);
-        // Hostile files are for the importers' tests.
+        // Hostile files are covered by the importers' tests.
         if (name[0] != '.' && strcmp(name, "hostile") != 0 && length < (int)sizeof(path) &&
             stat(path, &status) == 0) {
             if (S_ISDIR(status.st_mode))
@@ -423,7 +422,7 @@ int main(int argc, char **argv)
         return 2;
     }
     log_set_level(LOG_ERROR);
-    // Which faces the irradiance cache traces first depends on the order of threads.
+    // The order of threads decides which faces the irradiance cache traces first.
     setenv("LP_NUM_THREADS", "1", 1);
     struct error error = {""};
     struct session session = {.folder = argv[2], .comparing = comparing};

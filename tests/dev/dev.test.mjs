@@ -1,6 +1,6 @@
-// Proves what ./dev does before and around a build: a tool that is too old is named before anything is
-// built, a build folder that a failure left half-configured heals, and ./dev bare leaves nothing behind
-// when it is interrupted, and says so where it can do nothing.
+// Proves what ./dev does before and around a build: it names a tool that is too old before anything is built, recovers
+// a build folder that a failure left half-configured, and ./dev bare leaves nothing behind when it is interrupted and
+// says so where it cannot run.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chmodSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, readlinkSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -14,7 +14,7 @@ const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 describe('./dev', () => {
   let folder, tree, bin;
 
-  // A copy of the tree, whose build folders are its own, and a folder of programs that stand before others.
+  // A copy of the tree with build folders of its own, and a folder of programs that take precedence over others.
   before(() => {
     folder = mkdtempSync(join(tmpdir(), 'voxcast-dev-'));
     tree = join(folder, 'tree');
@@ -92,7 +92,7 @@ describe('./dev bare', { skip: process.getuid() !== 0 && 'only root can make a b
     let log = '';
     child.stderr.on('data', (data) => (log += data));
     const ended = new Promise((done) => child.on('exit', (code, signal) => done(code ?? signal)));
-    // In the midst of installing packages, by apt that sudo called.
+    // While packages are being installed, by apt that sudo called.
     let code = await Promise.race([ended, new Promise((done) => child.stderr.on('data', () => /packages: installing/.test(log) && done('begun')))]);
     if (code === 77) return t.skip(log.trim());
     assert.equal(code, 'begun', log);

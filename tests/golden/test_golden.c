@@ -1,7 +1,7 @@
-// Proves that images stay as they were judged good: renders every built-in scene and every debug
-// view small, with fixed exposure, and compares with the kept images. At most 0.1 % of pixels may
-// differ by more than 5/255 in any channel. On failure the actual image and an amplified
-// difference are written to the working folder. `test_golden --update` writes the kept images.
+// Proves that images stay as they were approved: renders every built-in scene and every debug view
+// small, with fixed exposure, and compares them with the kept images. At most 0.1 % of pixels may
+// differ by more than 5/255 in any channel. On failure the actual image and an amplified difference
+// are written to the working folder. `test_golden --update` writes the kept images.
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -147,7 +147,7 @@ static uint32_t list_goldens(struct golden *goldens, uint32_t capacity)
     }
     for (int view = DEBUG_VIEW_FINAL + 1; view < DEBUG_VIEW_VOXEL_OPACITY && count < capacity;
          view++) {
-        // Materials show best among the objects; tiles and cascades need their kinds of lights.
+        // Materials are best seen among the objects; tiles and cascades need their kinds of lights.
         const char *scene = "cornell-objects";
         if (view == DEBUG_VIEW_LIGHTS_PER_TILE)
             scene = "atrium-lights";

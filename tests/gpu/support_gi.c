@@ -196,6 +196,6 @@ struct frame_params gi_params(uint32_t width, uint32_t height, enum gi_method me
     params.quality = QUALITY_INTERACTIVE;
     params.settings.gi_method = method;
     params.settings.soft_shadows = false;
-    params.settings.gather_mode = GATHER_CACHE; // voxels are judged, not what rays make of them
+    params.settings.gather_mode = GATHER_CACHE; // the tests judge voxels, not rays
     return params;
 }

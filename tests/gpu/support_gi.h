@@ -1,19 +1,19 @@
-// What the tests of global illumination share: images drawn until they have converged, their
-// means, and a report that prints every measured figure and fails at the end.
+// Shared by the tests of global illumination: images drawn until they have converged, their means,
+// and a report that prints every measured figure and fails at the end.
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_GI_H
 #define VOXCAST_TESTS_GPU_SUPPORT_GI_H
 
 #include "support_gpu.h"
 #include "support_path.h"
 
-// Methods to be proved, in the order of `enum gi_method` without `none`.
+// Methods to prove, in the order of `enum gi_method` without `none`.
 #define GI_PROVED_METHODS 2u
 extern const enum gi_method gi_proved_methods[GI_PROVED_METHODS];
 
 // Whether VOXCAST_TEST_FULL is set: run every combination, not a selection.
 bool gi_test_is_full(void);
 
-// Prints one line, "ok" or "BAD" and the text, and counts what is bad.
+// Prints one line, "ok" or "BAD" and the text, and counts failures.
 struct gi_report {
     uint32_t checked;
     uint32_t bad;
@@ -28,25 +28,26 @@ void gi_check_ratio(struct gi_report *report, double measured, double expected, 
 // Fails the test if anything was bad or nothing was checked.
 void gi_report_finish(const struct gi_report *report);
 
-// Draws one frame of a scene that is shown; prints why if that fails. The image is made at need.
+// Draws one frame of a scene that is shown; prints the reason on failure. Allocates the image if
+// needed.
 enum render_result gi_draw_once(struct renderer *renderer, struct view *view,
                                 const struct frame_params *params,
                                 struct test_picture *out_picture);
 
-// Draws with the same parameters until RENDER_UNCHANGED, at most GI_MAX_FRAMES times; beyond that
-// says so, and gi_report_finish() fails. Returns the number of frames; 0, with the reason printed,
-// if one cannot be drawn. The scene must have been shown by renderer_set_scene().
+// Draws with the same parameters until RENDER_UNCHANGED, at most GI_MAX_FRAMES times. Beyond that
+// it says so, and gi_report_finish() fails. Returns the number of frames; 0, with the reason
+// printed, if one cannot be drawn. The scene must have been shown by renderer_set_scene().
 #define GI_MAX_FRAMES 512u
 uint32_t gi_converge(struct renderer *renderer, struct view *view,
                      const struct frame_params *params, struct test_picture *out_picture);
 
-// Shows the scene, draws it in a view of its own until it has converged, and hides it again; tells
-// how long that took if it was not one frame. The image is of floats for FRAME_OUTPUT_LINEAR, and
-// of bytes as floats 0..255 for RGBA8. Fails the test if the scene cannot be drawn.
+// Shows the scene, draws it in a view of its own until it has converged, and hides it again. Prints
+// the number of frames unless it was one. The image holds floats for FRAME_OUTPUT_LINEAR, and bytes
+// as floats 0..255 for RGBA8. Fails the test if the scene cannot be drawn.
 struct test_picture gi_draw(struct scene *scene, const struct frame_params *params);
 
-// The same in two steps, so that images of one scene share its voxels: a view of a scene that is
-// shown by gi_show(), until gi_hide().
+// The same in two steps, so that several images of one scene share its voxels: a view of a scene
+// between gi_show() and gi_hide().
 struct view *gi_show(struct scene *scene);
 struct test_picture gi_draw_in(struct view *view, const struct frame_params *params);
 void gi_hide(struct view **view);
@@ -56,7 +57,7 @@ void gi_picture_finish(struct test_picture *picture);
 // Mean of red, green and blue.
 void gi_mean(const float *pixels, uint32_t width, uint32_t height, double out_rgb[3]);
 
-// What a share of the red values is at most: 0 the smallest, 0.5 the median, 1 the largest.
+// A quantile of the red values: 0 the smallest, 0.5 the median, 1 the largest.
 double gi_quantile(const struct test_picture *picture, double fraction);
 
 // As test_params(), for a method: linear output, direct light as the path tracer has it.

@@ -42,7 +42,7 @@ static uint32_t add_matte(struct scene *scene, const float reflectance[3], float
     return material;
 }
 
-// A node, turned about the origin, that carries everything in the builder.
+// A node, rotated about the origin, that carries everything in the builder.
 static void add_object(struct scene *scene, struct mesh_builder *builder, uint32_t material,
                        float turn_rad)
 {
@@ -71,7 +71,7 @@ static void add_camera(struct scene *scene, const float eye[3], const float targ
     scene_update_world_transforms(scene);
 }
 
-// The faces of a box, to be seen from inside, cut into divisions x divisions quads each.
+// The faces of a box, seen from inside, each cut into divisions x divisions quads.
 static void add_inside(struct mesh_builder *builder, const float low[3], const float high[3],
                        unsigned faces, uint32_t divisions)
 {
@@ -284,7 +284,7 @@ struct scene *gi_rooms_scene(const struct gi_rooms_params *params)
     rooms_wall(params, low, high);
     struct mesh_builder builder;
     mesh_builder_init(&builder);
-    // The rooms' faces end at the wall, so that none runs through it.
+    // The rooms' faces end at the wall, so that none passes through it.
     add_inside(&builder, GRAY(-e), (const float[3]){low[0], e, e}, BOX_ALL, 1);
     add_inside(&builder, (const float[3]){high[0], -e, -e}, GRAY(e), BOX_ALL, 1);
     add_object(scene, &builder, plaster, params->turn_rad);

@@ -1,4 +1,4 @@
-// What the tests that render share: a renderer, small scenes, and images as floats.
+// Shared by the tests that render: a renderer, small scenes, and images as floats.
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_GPU_H
 #define VOXCAST_TESTS_GPU_SUPPORT_GPU_H
 
@@ -17,10 +17,10 @@ struct renderer *test_renderer(void);
 // cmocka teardown of the group: destroys it and fails if GL reported errors.
 int test_renderer_teardown(void **state);
 
-// Parameters with no shadows' softness to speak of: final quality, fixed exposure, no tone curve.
+// Parameters with hard shadows: final quality, fixed exposure, no tone curve.
 struct frame_params test_params(uint32_t width, uint32_t height, enum frame_output output);
 
-// Draws `scene` in a view of its own and waits.
+// Draws `scene` in a view of its own and waits for the image.
 struct test_picture test_draw_linear(struct scene *scene, const struct frame_params *params);
 
 // Mean radiance of the centre pixel's neighbourhood (3 x 3), red channel.

@@ -1,4 +1,4 @@
-// Images of the reference path tracer as tests want them: one call, all samples.
+// Images of the reference path tracer for tests: one call, all samples.
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_PATH_H
 #define VOXCAST_TESTS_GPU_SUPPORT_PATH_H
 
@@ -24,8 +24,8 @@ struct path_params {
 struct path_picture {
     uint32_t width;
     uint32_t height;
-    float *direct;   // emission, background, and light of lights and emitters reflected once
-    float *sky;      // light of the environment reflected once
+    float *direct;   // emission, background, and the first reflection of lights and emitters
+    float *sky;      // the first reflection of the environment
     float *indirect; // light reflected twice or more
 };
 

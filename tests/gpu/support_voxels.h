@@ -1,5 +1,5 @@
-// What the tests of voxels share: a volume filled without drawing an image, what lies in its
-// voxels as sorted records, and scenes that place triangles on voxels exactly.
+// Shared by the tests of voxels: a volume that is filled without drawing an image, the content of
+// its voxels as sorted records, and scenes that place triangles exactly on voxels.
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_VOXELS_H
 #define VOXCAST_TESTS_GPU_SUPPORT_VOXELS_H
 
@@ -15,17 +15,17 @@ struct voxel_rig {
     struct frame_params params;
 };
 
-// Fail the test where they cannot do their work. The scene stays the caller's.
+// These fail the test if they cannot do their work. The scene stays the caller's.
 void voxel_rig_init(struct voxel_rig *rig, struct scene *scene);
 void voxel_rig_finish(struct voxel_rig *rig);
 
 struct voxel_volume *voxel_rig_volume(struct voxel_rig *rig, enum gi_method method, uint32_t edge,
                                       uint32_t clip_levels);
 
-// Brings the volume up to date for a camera at `eye`; voxelizes where anything has changed.
+// Updates the volume for a camera at `eye`; voxelizes where anything has changed.
 void voxel_rig_voxelize(struct voxel_rig *rig, struct voxel_volume *volume, const float eye[3]);
 
-// Lights all voxels by what they emit, and filters.
+// Injects emission into all voxels, and filters.
 void voxel_rig_light(struct voxel_rig *rig, struct voxel_volume *volume);
 
 // What one surface has in one voxel.
@@ -42,13 +42,13 @@ struct voxel_records {
 };
 struct voxel_records voxel_read_records(const struct voxel_volume *volume);
 
-// How many records are not the same in both; prints the first few.
+// How many records differ; prints the first few.
 size_t voxel_count_differences(const struct voxel_records *a, const struct voxel_records *b);
 
 uint32_t voxel_record_word(const struct voxel_record *record, uint32_t surfel_word);
 
-// A scene whose bounds are -30 to 30 m, given by two specks in their corners. With 64 voxels along
-// an edge those of the coarsest level are 1 m wide, and the anchor is known.
+// A scene whose bounds are -30 to 30 m, by two specks in its corners. With 64 voxels along an edge,
+// voxels of the coarsest level are then 1 m wide, and the anchor is known.
 struct scene *voxel_scene_create(void);
 float voxel_scene_anchor(void);
 

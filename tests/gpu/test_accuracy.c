@@ -1,6 +1,6 @@
-// Proves voxcast accuracy: sweeps are read or refused with a reason, the Pareto front is what it
-// should be for made-up results, and a small run writes its files, keeps them, and goes on where it
-// was stopped.
+// Proves voxcast accuracy: sweeps are read or refused with a reason, the Pareto front is right for
+// made-up results, and a small run writes its files, keeps them, and continues where it was
+// stopped.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -163,7 +163,7 @@ static void test_pareto_front(void **state)
     // Too dark is as wrong as too bright.
     assert_true(is_marked(results, "good", "energy_red"));
     assert_false(is_marked(results, "slower", "energy_red"));
-    // A configuration measured again takes its old place, and marks change.
+    // A configuration measured again replaces its old entry, and marks change.
     results_add(results, made_up_entry("fast", 1.0, 0.05, 0.99));
     assert_int_equal(cJSON_GetArraySize(at(results, "rungs")), 4);
     assert_false(is_marked(results, "good", "ldr_flip"));
@@ -243,7 +243,7 @@ static void test_a_run(void **state)
     const cJSON *none = cJSON_GetArrayItem(configurations, 0),
                 *half = cJSON_GetArrayItem(configurations, 1);
     assert_true(at(at(none, "frame_ms"), "median")->valuedouble == first_ms);
-    // Without indirect light, there is none; by voxels there is about as much as there should be.
+    // The method `none` has no indirect light; voxels have about as much as there should be.
     const cJSON *dark = at(at(none, "converged"), "indirect");
     const cJSON *lit = at(at(half, "converged"), "indirect");
     assert_true(fabs(at(dark, "energy_green")->valuedouble) < 0.01);
@@ -252,7 +252,7 @@ static void test_a_run(void **state)
     assert_true(at(at(half, "edit"), "arrived_ms")->valuedouble > 0.0);
     assert_true(at(half, "memory_bytes")->valuedouble > 0.0);
     assert_true(at(at(half, "converged"), "settled")->type == cJSON_True);
-    // The reference image of 16 samples errs, but less than what has no indirect light.
+    // The reference image of 16 samples errs, but less than an image without indirect light.
     const cJSON *noise = at(at(at(results, "noise"), "indirect"), "rmse");
     assert_true(at(noise, "reference")->valuedouble > 0.0);
     assert_true(at(noise, "reference")->valuedouble < 0.5 * at(dark, "rmse")->valuedouble);

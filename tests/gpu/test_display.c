@@ -1,5 +1,5 @@
-// Proves that images displayed on the CPU are those that the renderer displays: one scene by each
-// tone curve, with fixed and automatic exposure, from its linear radiance and from the GPU.
+// Proves that the CPU displays images as the renderer does: one scene with each tone curve, with
+// fixed and automatic exposure, from its linear radiance and from the GPU.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +35,7 @@ static struct picture linear_picture(struct renderer *renderer, struct frame_par
     return picture;
 }
 
-// Largest difference in steps of a byte between the renderer's image and ours.
+// Largest difference between the renderer's image and ours, in steps of a byte.
 static void compare(struct renderer *renderer, const struct frame_params *given,
                     const struct picture *radiance)
 {

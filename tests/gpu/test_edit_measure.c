@@ -1,5 +1,5 @@
-// Proves the measuring of edits: by direct light alone an image is what an edit makes of it in one
-// frame; by voxels the first of the change is there in one frame, and the rest comes in order. The
+// Proves the measurement of edits: with direct light alone an image follows an edit in one frame;
+// with voxels the first of the change is there in one frame, and the stages come in order. The
 // scene is afterwards as it was before, and what cannot be measured is refused with a reason.
 #include <setjmp.h>
 #include <stdarg.h>
@@ -104,7 +104,7 @@ static void test_indirect_light_follows(void **state)
     hide(scene);
 }
 
-// Measures what cannot be; the message names the reason.
+// Tries to measure what cannot be measured; the message must name the reason.
 static void assert_refused(struct edit_params *params, const char *reason)
 {
     struct error error = {""};
@@ -132,7 +132,7 @@ static void test_what_cannot_be_measured(void **state)
     assert_refused(&params, "material 0");
     params.light = params.material = EMITTER;
     assert_refused(&params, "exclude");
-    // A view that sees nothing of it.
+    // A view that sees nothing of the edit.
     params.light = SCENE_NONE;
     memcpy(frame.camera.target, (float[3]){0.0f, 0.0f, 100.0f}, sizeof(frame.camera.target));
     assert_refused(&params, "too little");

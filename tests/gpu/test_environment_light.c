@@ -1,6 +1,6 @@
-// Proves that an equirectangular image lights a scene as it should: one of a constant colour as the
-// constant environment does, and one with a sun of a single texel as the path tracer says. How: the
-// images are written as OpenEXR files and loaded; images are compared as linear radiance.
+// Proves that an equirectangular image lights a scene correctly: one of a constant colour like the
+// constant environment, and one with a sun of a single texel like the path tracer. The images are
+// written as OpenEXR files and loaded; rendered images are compared as linear radiance.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,7 +21,7 @@
 #define HEIGHT       256
 #define PICTURE_EDGE 48
 
-// Gives the scene the image of a file of one colour, but for one texel that is a grey sun.
+// Gives the scene an image of one colour, except for one texel that is a grey sun.
 static void load_sky(struct scene *scene, const float color[3], int sun_texel, float sun)
 {
     float *texels = calloc(WIDTH * HEIGHT, 4 * sizeof(float));
@@ -119,7 +119,7 @@ static void test_a_constant_image_is_a_constant_sky(void **state)
     gi_report_finish(&report);
 }
 
-// Light that the ball reflects, on average over the image. What is seen beside it cancels out.
+// Light that the ball reflects, averaged over the image. What is seen beside it cancels out.
 static double reflected(bool metal, int side, int sun_texel, enum gi_method method)
 {
     const float sky[3] = {0.3f, 0.3f, 0.3f};
@@ -171,7 +171,7 @@ static void test_a_sun_of_one_texel_agrees_with_the_path_tracer(void **state)
         double expected = 0.0;
         for (int side = 0; side < 4; side++)
             expected += traced(metal, side, sun) / 4.0;
-        for (size_t m = 0; m < 2; m++) { // grids gather as clipmaps do
+        for (size_t m = 0; m < 2; m++) { // grids work as clipmaps do here
             double sum = 0.0;
             for (int side = 0; side < 4; side++)
                 sum += reflected(metal, side, sun, methods[m]) / 4.0;

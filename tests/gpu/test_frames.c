@@ -1,7 +1,7 @@
-// Proves how frames run: nothing runs when nothing changed, an edit reruns only what it concerns,
-// only the effects that a scene calls for are on, leaving the others out changes no pixel,
-// transparent layers blend in order of depth, outputs agree with one another, and a broken shader
-// keeps the last good one.
+// Proves how frames run: nothing runs when nothing changed, an edit reruns only what depends on it,
+// only the effects that a scene needs are on, leaving the others out changes no pixel, transparent
+// layers blend in order of depth, outputs agree with one another, and a broken shader keeps the
+// last good one.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -93,7 +93,7 @@ static void test_only_what_changed_runs(void **state)
     assert_false(pass_ran(renderer, view, "shadow_map"));
     assert_true(pass_ran(renderer, view, "direct_light"));
 
-    // A colour casts no other shadow; hiding an object does.
+    // Another colour casts no other shadow; hiding an object does.
     struct scene_material material = scene->materials[0];
     material.base_color[0] = 0.2f;
     scene_set_material(scene, 0, &material);
@@ -163,8 +163,8 @@ static void test_effects_follow_the_scene(void **state)
     scene_destroy(&scene);
 }
 
-// Code that is left out may let a compiler round sums otherwise: 0.01 % is far below one step of a
-// displayed pixel.
+// Without the code that is left out, a compiler may round sums differently: 0.01 % is far below one
+// step of a displayed pixel.
 static void test_left_out_effects_change_no_pixel(void **state)
 {
     (void)state;
@@ -190,7 +190,8 @@ static void test_left_out_effects_change_no_pixel(void **state)
     }
 }
 
-// Three half-covering emissive sheets before a bright wall: c = sum over the layers, back to front.
+// Three half-covering emissive sheets in front of a bright wall: c = sum over the layers, back to
+// front.
 static void test_layers_blend_in_order_of_depth(void **state)
 {
     (void)state;
@@ -320,7 +321,7 @@ static void test_bad_parameters_are_refused(void **state)
     params = test_params(32, 32, FRAME_OUTPUT_YCBCR);
     params.camera.eye[1] = NAN;
     assert_int_equal(renderer_view_draw(renderer, view, &params, &error), RENDER_FAILED);
-    // Four frames uncollected are one too many.
+    // Four uncollected frames are one too many.
     params.camera.eye[1] = 0.0f;
     for (uint32_t i = 0; i < RENDERER_FRAMES_IN_RING; i++) {
         params.camera.eye[0] = (float)i;

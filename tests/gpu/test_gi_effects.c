@@ -1,6 +1,6 @@
-// Proves that global illumination is planned as everything else is: leaving out what a scene does
-// not need changes no pixel, each thing that needs an effect turns it on and, once gone, off with
-// its memory, and a converged image costs nothing more.
+// Proves that global illumination is planned as all else is: leaving out what a scene does not need
+// changes no pixel; whatever needs an effect turns it on and, once gone, off together with its
+// memory; and a converged image costs nothing more.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,13 +30,13 @@ enum {
 };
 #define EFFECT_NAMES (sizeof(effect_names) / sizeof(effect_names[0]))
 
-// All that may run where nothing is lit.
+// All that may run where nothing emits light.
 static const char *const unlit_passes[] = {"visibility",  "gbuffer",      "emission",
                                            "environment", "transparency", "exposure",
                                            "tonemap",     "readback",     "debug_view"};
 #define UNLIT_PASSES (sizeof(unlit_passes) / sizeof(unlit_passes[0]))
 
-// A shown scene, and what its newest frame says.
+// A shown scene, and what its newest frame reports.
 struct stage {
     struct renderer *renderer;
     struct view *view;
@@ -64,8 +64,7 @@ static void stage_init(struct stage *stage, struct scene *scene, enum gi_method 
     assert_non_null(stage->view);
     stage->params = gi_params(32, 32, method);
     stage->params.settings.soft_shadows = true;
-    // How fine voxels are, how many cones they send and how often light bounces matters to time
-    // alone, not to what is on.
+    // Voxel size, number of cones and bounces matter only to time, not to which effects are on.
     stage->params.settings.voxel_resolution = VOXEL_RESOLUTION_64;
     stage->params.settings.cone_set = CONE_SET_5;
     stage->params.settings.clip_levels = 2;
@@ -111,7 +110,7 @@ static const char *describe(uint32_t bits, char out_text[160])
     return out_text[0] ? out_text : "nothing";
 }
 
-// The effects on are those in `must`, and perhaps some in `may`.
+// The effects that are on must be all of `must`, and may include some of `may`.
 static void check_effects(struct gi_report *report, const struct stage *stage, const char *what,
                           uint32_t must, uint32_t may)
 {
@@ -122,7 +121,7 @@ static void check_effects(struct gi_report *report, const struct stage *stage, c
              what, describe(on, texts[0]), describe(must, texts[1]), may ? ", perhaps more" : "");
 }
 
-// What had no memory before has none again.
+// Memory that was 0 before must be 0 again.
 static void check_memory_freed(struct gi_report *report, const struct stage *stage,
                                const struct frame_statistics *before, const char *what)
 {
@@ -139,7 +138,7 @@ static void check_memory_freed(struct gi_report *report, const struct stage *sta
     }
 }
 
-// A second square above the first, facing it, hidden at first: what becomes glass or emitter.
+// A second square above the first, facing it, hidden at first. It will become glass or an emitter.
 static uint32_t add_hidden_square(struct scene *scene)
 {
     struct scene_material material = scene->materials[0];
@@ -172,7 +171,7 @@ static const struct change_case {
     const char *what;
     enum change change;
     bool lit;           // there is a light already
-    uint32_t must, may; // effects that come
+    uint32_t must, may; // effects that turn on
 } changes[] = {
     // Glass reflects, too; a scene with light has indirect light anyway.
     {"glass", ADD_GLASS, true, REFRACTION, SPECULAR},
@@ -265,7 +264,7 @@ static void test_each_thing_turns_on_its_effect(void **state)
     gi_report_finish(&report);
 }
 
-// Memory comes back even if all of global illumination is switched off.
+// Memory is freed again even if all of global illumination is switched off.
 static void test_switching_off_frees_memory(void **state)
 {
     (void)state;
@@ -348,7 +347,7 @@ static void test_black_scenes_bounce_nothing(void **state)
         struct stage stage;
         stage_init(&stage, lit_square_scene(0.0f, 0.0f), gi_proved_methods[m]);
         stage_draw(&stage);
-        // Black receives nothing either.
+        // A black surface receives nothing either.
         check_effects(&report, &stage, "black", 0, DIFFUSE);
         stage_finish(&stage);
     }
@@ -364,8 +363,8 @@ static void check_planned_is_forced(struct gi_report *report, const char *name,
     struct frame_params params = gi_params(64, 36, method);
     params.output = FRAME_OUTPUT_RGBA8;
     params.settings.soft_shadows = true;
-    // What is left out does not depend on how fine voxels are, on cones and bounces; the time of
-    // this test does.
+    // What is left out does not depend on voxel size, cones and bounces; the time of this test
+    // does.
     params.settings.voxel_resolution = VOXEL_RESOLUTION_64;
     params.settings.cone_set = CONE_SET_5;
     params.settings.clip_levels = 2;
@@ -384,7 +383,7 @@ static void check_planned_is_forced(struct gi_report *report, const char *name,
     scene_destroy(&scene);
 }
 
-// The first two scenes with every method, of the others each with one in turn; all with
+// The first two scenes with every method, each of the others with one method in turn; all with
 // VOXCAST_TEST_FULL=1.
 static void test_left_out_effects_change_no_pixel(void **state)
 {
@@ -397,7 +396,7 @@ static void test_left_out_effects_change_no_pixel(void **state)
     gi_report_finish(&report);
 }
 
-// gi_converge() waits for RENDER_UNCHANGED; here it stays so, until something changes.
+// gi_converge() waits for RENDER_UNCHANGED; it must stay so until something changes.
 static void test_converged_pictures_rest(void **state)
 {
     (void)state;

@@ -26,7 +26,7 @@
 #include "support_gi_scenes.h"
 
 #define PICTURE_EDGE 64u
-// Final quality averages four pixels; the path tracer looks along the very same rays.
+// Final quality averages four pixels; the path tracer uses exactly the same camera rays.
 #define TRACED_EDGE       (2u * PICTURE_EDGE)
 #define SAMPLES           64u
 #define BLOCK_EDGE        8u

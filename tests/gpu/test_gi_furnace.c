@@ -23,7 +23,7 @@
 #define MANY_DIVISIONS 4u
 
 #define MEAN_TOLERANCE 0.03
-// Of all but one of a hundred pixels.
+// A bound for all but one of a hundred pixels.
 #define PIXEL_TOLERANCE 0.10
 #define LIGHT_TOLERANCE 0.05
 
@@ -48,8 +48,8 @@ static const struct furnace_case selection[] = {
     {0.8f, VOXEL_RESOLUTION_64, 1.0f, GATHER_RAYS, 0.0f, MANY_DIVISIONS, 0},
 };
 
-// Walls are emitters so large that cones gather their light, be they few triangles or many: their
-// first reflection is the first bounce.
+// The walls are emitters so large that cones gather their light, whether they have few triangles or
+// many: their first reflection is the first bounce.
 static double furnace_series(const struct furnace_case *c)
 {
     double series = 1.0 / (1.0 - c->albedo);

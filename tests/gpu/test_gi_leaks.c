@@ -1,10 +1,10 @@
-// Proves that light stays in its room. Two closed rooms share a wall one voxel thick, a light
-// lights one of them: the other receives less than 1 % of the lit room's mean indirect light. A
-// wall two voxels thick lets nothing through, a turned one 0.04 % at most. Wherever the wall lies
-// between two voxels, and however the rooms are turned.
+// Proves that light stays in its room. Two closed rooms share a wall one voxel thick, and a light
+// is in one of them: the other room receives less than 1 % of the lit room's mean indirect light. A
+// wall two voxels thick lets nothing through, a rotated one 0.04 % at most. This holds wherever the
+// wall lies between two voxels, and however the rooms are rotated.
 //
-// A voxel is the longest edge of the scene's bounds over 64, which is what a grid of that
-// resolution can do at best. Clip levels are finer near the camera.
+// A voxel is the longest edge of the scene's bounds over 64, the best that a grid of that
+// resolution can do. Clip levels are finer near the camera.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,14 +19,14 @@
 #define RESOLUTION         64.0
 #define ONE_VOXEL_FRACTION 0.01
 #define NOTHING            1e-6
-// Along the edges of turned walls a little comes through: a tenth of a step of an 8-bit image in
+// Along the edges of rotated walls a little comes through: a tenth of a step of an 8-bit image in
 // which the lit room is white.
 #define TURNED_NOTHING 4e-4
 
 static const float turns_rad[] = {0.0f, 0.2f, 0.73f};
 static const float offsets_voxels[] = {0.0f, 0.25f, 0.5f};
 
-// The bounds of turned rooms do not depend on the wall.
+// The bounds of rotated rooms do not depend on the wall.
 static double voxel_edge_m(float turn_rad)
 {
     struct gi_rooms_params rooms = {.wall_m = 0.1f, .turn_rad = turn_rad};
@@ -69,7 +69,7 @@ static void check_walls_of_turn(struct gi_report *report, enum gi_method method,
     double nothing = turn == 0 ? NOTHING : TURNED_NOTHING;
     double allowed = wall_voxels == 1 ? ONE_VOXEL_FRACTION : nothing;
     for (size_t offset = 0; offset < 3; offset++) {
-        // Of turned rooms and of thick walls the diagonal with the worst of the table is enough.
+        // For rotated rooms and thick walls, the diagonal with the worst of the table is enough.
         if (!gi_test_is_full() && (turn > 0 || wall_voxels > 1) && offset != (3 - turn) % 3)
             continue;
         struct gi_rooms_params rooms = {.wall_m = (float)(wall_voxels * edge_m),
@@ -107,7 +107,8 @@ static void test_wall_of_two_voxels(void **state)
     check_walls(2);
 }
 
-// What the tests above compare is there: the lit room's indirect light is that of the path tracer.
+// The light that the tests above compare exists: the lit room's indirect light is that of the path
+// tracer.
 static void test_lit_room_is_lit(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-// Proves that images gathered by rays show what lies between voxels: light under a low table, and
-// a room in a mirror, against the reference path tracer, where those gathered from voxels do not;
-// and the shadows of lights that have a size.
+// Proves that a final gather by rays shows what lies between voxels: light under a low table, and a
+// room in a mirror, compared with the reference path tracer, where a final gather by voxels does
+// not; and the shadows of lights that have a size.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -20,7 +20,7 @@
 
 // Root mean square of the differences over the mean of indirect light, by blocks.
 #define MAX_RAYS 0.10
-// Those by voxels err so many times as much, at least.
+// Images by voxels err at least so many times as much.
 #define MIN_VOXELS 1.4
 
 static void draw_indirect(struct scene *scene, enum gather_mode gather,
@@ -93,7 +93,8 @@ static void test_rays_find_what_voxels_do_not(void **state)
     gi_report_finish(&report);
 }
 
-// A ray a pixel is noisier than the cache: while somebody moves nobody is to see that, nor to wait.
+// One ray a pixel is noisier than the cache: while somebody moves, nobody must see that noise or
+// wait for less of it.
 static void test_pictures_in_motion_show_the_cache(void **state)
 {
     (void)state;
@@ -134,14 +135,14 @@ static void test_pictures_in_motion_show_the_cache(void **state)
 
 #define LIGHT_RADIUS_M 0.2
 
-// Share of a disk that a straight edge leaves, which lies so many radii from its middle.
+// Fraction of a disk that a straight edge leaves, which lies so many radii from its centre.
 static double disk_fraction(double edge)
 {
     double t = fmax(fmin(edge, 1.0), -1.0);
     return 0.5 + (t * sqrt(1.0 - t * t) + asin(t)) / 3.14159265358979;
 }
 
-// The edge of the sheet hides from a place x of the floor what of the light lies at less than -x.
+// At position x of the floor, the edge of the sheet hides the part of the light that lies below -x.
 static void test_sphere_lights_have_their_penumbra(void **state)
 {
     (void)state;
@@ -178,7 +179,7 @@ static void test_sphere_lights_have_their_penumbra(void **state)
     gi_report_finish(&report);
 }
 
-// Off what shows the light itself.
+// Away from pixels that show the light itself.
 static double shadow_error(const float *a, const float *reference)
 {
     const uint32_t blocks = PICTURE_EDGE / BLOCK_EDGE;
@@ -232,7 +233,7 @@ static void test_planar_lights_have_their_penumbra(void **state)
     gi_report_finish(&report);
 }
 
-// What rays have found is good only for what they were asked for: another debug view or another
+// What rays have found is valid only for what they were traced for: another debug view or another
 // effect in the same view starts them anew.
 static void test_rays_start_anew_where_more_is_asked(void **state)
 {

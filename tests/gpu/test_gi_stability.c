@@ -1,6 +1,6 @@
-// Proves that global illumination in motion stays sound: while the camera moves and while an object
-// moves every value is finite, and what has converged afterwards is what a renderer that has seen
-// nothing before converges to.
+// Proves that global illumination in motion stays correct: while the camera or an object moves
+// every value is finite, and the image that converges afterwards is the one to which a new renderer
+// converges.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -74,8 +74,8 @@ static double largest_difference(const struct test_picture *a, const struct test
     return largest;
 }
 
-// Compares what the view converges to with what a fresh view shows after the scene was taken away
-// and shown anew; and that with an image without global illumination.
+// Compares what the view converges to with what a new view shows after the scene was hidden and
+// shown again; and that with an image without global illumination.
 static void check_rest(struct gi_report *report, struct renderer *renderer, struct view *view,
                        struct scene *scene, struct frame_params params, const char *what)
 {

@@ -35,7 +35,7 @@ static struct frame_params view_params(const struct scene *scene, enum gi_method
     return params;
 }
 
-// The share of pixels that are not black, and whether all are finite and none negative.
+// The fraction of pixels that are not black, and whether all are finite and none negative.
 static double lit_fraction(const struct test_picture *picture, bool *out_finite)
 {
     uint32_t count = picture->width * picture->height, lit = 0;
@@ -95,7 +95,7 @@ static void test_every_view_is_finite(void **state)
     gi_report_finish(&report);
 }
 
-// Levels beyond those there are, and mip levels, which have no cells.
+// Levels beyond the last one, and mip levels, which have no cells.
 static void test_every_level_is_finite(void **state)
 {
     (void)state;

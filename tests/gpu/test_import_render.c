@@ -1,7 +1,7 @@
 // Proves that imported scenes render: draws every sample of the khronos and features folders once,
-// small, and checks that the image is finite, that GL reports no error, and that something else
-// than the background is seen (but for files that hold only points or lines). Says so and skips
-// where the folder of test scenes is absent.
+// small, and checks that the image is finite, that GL reports no error, and that something besides
+// the background is seen (except in files that hold only points or lines). Says so and skips where
+// the folder of test scenes is absent.
 #include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
@@ -37,7 +37,7 @@ static void draw_file(const char *path)
     struct error error = {""};
     struct scene *scene = scene_load(path, &error);
     if (!scene) {
-        // What is not supported is refused by its name.
+        // Unsupported features are refused by their names.
         if (!strstr(error.message, "not supported"))
             fail_msg("%s: %s", path, error.message);
         refused_count++;

@@ -1,7 +1,7 @@
-// Proves that nothing of before is left in an image after any parameter has changed: each row of
-// the table is set after an image has come to rest, drawn to rest, and compared with a view of a
-// scene made anew in that state; then it is set back and compared with the first image. So what a
-// new setting must reach cannot be forgotten.
+// Proves that a changed parameter leaves nothing of the former state in an image. Each row of the
+// table is set after an image has converged; the new converged image is compared with a new view of
+// a scene made in that state; then the parameter is set back and compared with the first image. So
+// no dependency on a new setting can be forgotten.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,13 +18,13 @@
 #include "server/document/document_text.h"
 #include "support_gi.h"
 
-// Of 255, in any channel of any pixel. Two fresh views of one state are the same to the bit, but
-// light in voxels that spreads from other light ends elsewhere within what counts as settled, 0.8 %
-// of the brightest face. Measured: 2 for one parameter, else at most 1; what was left over of
-// before took 9 to 158 when this was written.
+// Of 255, in any channel of any pixel. Two new views of one state are the same to the bit. Light in
+// voxels that spreads from former light may end elsewhere within what counts as converged, 0.8 % of
+// the brightest face. Measured: 2 for one parameter, else at most 1; errors of invalidation were 9
+// to 158 when this was written.
 #define BOUND 2.0
 
-// The table's column of what has to be drawn again, in its order.
+// The table's column `redraw`, in its order.
 static const uint32_t redraws[] = {
 #define PARAMETER(record, name, type, range, unit, initial, handling, redraw, ...)                 \
     INVALIDATES_##redraw,
@@ -85,8 +85,8 @@ static void add_box(struct scene *scene, uint32_t material, const float low[3], 
 }
 
 // A corner with a mirror, a box of each kind, a light that is seen, and a spot. Crumbs far off make
-// voxels coarse, so that there are few and light settles soon; and what moves stays in between,
-// since voxels that have once been laid out for more stay so.
+// voxels coarse, so that there are few and light converges soon. What moves stays inside the
+// bounds, since voxels that have once been laid out for a larger scene stay so.
 static struct scene *make_scene(void)
 {
     struct scene *scene = scene_create("everything");
@@ -163,7 +163,7 @@ static struct test_picture draw(struct stage *stage)
     return gi_draw_in(stage->view, &params);
 }
 
-// Values where the next best one would change nothing, or cannot be set.
+// Values where the next best one would change nothing or is refused.
 static const struct {
     enum parameter_group group;
     const char *name, *value;
@@ -262,8 +262,8 @@ static bool is_among(const char *const *names, const char *name)
     return *names != NULL;
 }
 
-// Of things in the scene, whose revisions tell one change from none, some of each kind do; all of
-// them with VOXCAST_TEST_FULL.
+// For things in the scene, whose changes show in revisions, some parameters of each kind are
+// enough; all with VOXCAST_TEST_FULL.
 static bool is_chosen(const struct parameter *parameter)
 {
     static const char *const chosen[] = {
@@ -278,12 +278,12 @@ static bool is_chosen(const struct parameter *parameter)
 
 struct changed {
     struct parameter_value value;
-    struct test_picture picture; // at rest after the change
+    struct test_picture picture; // converged after the change
     double back;                 // difference to the first image once it was set back
 };
 
 struct run {
-    const char *key, *value;  // set beside the base; NULL for nothing
+    const char *key, *value;  // set in addition to the base; NULL for nothing
     const char *const *names; // of the parameters to change; NULL for all that are chosen
     uint32_t count;
     struct changed changes[MAX_CASES];
@@ -322,8 +322,8 @@ static void draw_changes(struct run *run)
     close_stage(&stage);
 }
 
-// How far the image is from one by a view that has never known anything else: of a scene made
-// anew, or at least with voxels of its own, where the scene is the same.
+// How far the image is from that of a view without history: of a scene made anew, or at least with
+// voxels of its own, where the scene is the same.
 static void judge_change(struct run *run, const struct changed *changed, struct stage *shared,
                          struct gi_report *report, uint32_t *without_effect)
 {
@@ -387,8 +387,8 @@ static void test_every_parameter(void **state)
     check(NULL, NULL, NULL);
 }
 
-// Where pixels gather the only bounce, light settles at once and no generation of it tells of an
-// edit; transparent layers show the cache all the same.
+// With rays and a single bounce, light converges at once, and no new generation shows that an edit
+// came. Transparent layers show the cache all the same.
 static void test_single_bounce(void **state)
 {
     (void)state;
@@ -396,7 +396,8 @@ static void test_single_bounce(void **state)
     check("settings.bounces", "1", names);
 }
 
-// In a scene that has one Blinn-Phong material no effect tells of the others' model.
+// In a scene that has one Blinn-Phong material already, no effect bit shows that the others'
+// shading model changes.
 static void test_shading_in_reflections(void **state)
 {
     (void)state;
@@ -404,7 +405,7 @@ static void test_shading_in_reflections(void **state)
     check("view.debug_view", "indirect_specular", names);
 }
 
-// One view goes through all of them, each beside a new view of the same scene.
+// One view goes through all of them, each compared with a new view of the same scene.
 static void test_debug_views(void **state)
 {
     (void)state;

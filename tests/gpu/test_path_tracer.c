@@ -83,8 +83,8 @@ static void test_punctual_lights_follow_their_formulas(void **state)
     gi_report_finish(&report);
 }
 
-// The share of a hemisphere, weighted by cosine, that a polygon takes: Lambert's sum over edges.
-// The whole polygon lies above the receiver's horizon.
+// The fraction of a hemisphere, weighted by cosine, that a polygon covers: Lambert's sum over
+// edges. The whole polygon lies above the receiver's horizon.
 static double form_factor(const double point[3], const double normal[3], const double corners[][3],
                           int count)
 {
@@ -111,7 +111,7 @@ static double form_factor(const double point[3], const double normal[3], const d
     return fabs(sum);
 }
 
-// A square above another: in the first it emits, in the second it reflects a light's light.
+// One square above another: in the first case it emits, in the second it reflects a light.
 static void test_one_reflection_follows_the_form_factor(void **state)
 {
     (void)state;
@@ -123,7 +123,7 @@ static void test_one_reflection_follows_the_form_factor(void **state)
         corners[i / 3][i % 3] = (float)above[i / 3][i % 3];
     double fraction = form_factor((const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, above, 4);
     for (int emits = 0; emits < 2; emits++) {
-        // The square below is nearly a point: nothing is reflected back and forth.
+        // The lower square is nearly a point: nothing is reflected back and forth.
         struct scene *scene = test_square_scene(0.01f, 0.5f);
         uint32_t sheet = builtin_add_matte(scene, "sheet", (const float[3]){0.8f, 0.8f, 0.8f});
         scene->materials[sheet].emissive[0] = emits ? 1.0f : 0.0f;
@@ -139,7 +139,7 @@ static void test_one_reflection_follows_the_form_factor(void **state)
             sun.casts_shadow = false;
             scene_add_light(scene, &sun, (float[3]){0}, (float[3]){0, 0, 1});
         }
-        // The camera sees through the sheet's back, or from below it would see nothing at all.
+        // The camera sees through the sheet's back; from below it would see nothing at all.
         struct path_params params = path_params(scene, 2000);
         params.camera.fov_y_rad = 0.001f;
         double radiance = emits ? 10.0 : 0.8 / M_PI * 100.0;
@@ -255,8 +255,8 @@ static void test_metal_under_a_sky_shows_its_albedo(void **state)
     gi_report_finish(&report);
 }
 
-// Walls that glow light gloss as a sky that glows as much: found by sampling emitters as well as by
-// following reflections, or by these alone.
+// Glowing walls light a specular surface as a sky of equal radiance does: by sampling emitters and
+// following reflections, and by following reflections alone.
 static void test_specular_in_a_glowing_box(void **state)
 {
     (void)state;
@@ -265,7 +265,7 @@ static void test_specular_in_a_glowing_box(void **state)
     for (int i = 0; i < 6; i++) {
         double means[2];
         for (int sky = 0; sky < 2; sky++) {
-            // Black walls that glow, or nothing but a sky that glows as much.
+            // Black glowing walls, or nothing but a glowing sky of equal radiance.
             struct scene *scene = sky ? scene_create("sky")
                                       : gi_box_scene(&(struct gi_box_params){
                                             .emission = 1.0f, .half_edge_m = 2.0f, .divisions = 1});
@@ -354,14 +354,14 @@ static struct scene *metal_under_light_scene(double light_x, double roughness)
     return scene;
 }
 
-// The renderer takes a light's gloss from one point of it: its figure is told, not judged.
+// The renderer takes a light's specular part from one representative point: its figure is printed,
+// not judged.
 static void test_specular_of_a_light_is_its_integral(void **state)
 {
     (void)state;
     struct gi_report report = {0};
     static const double roughnesses[] = {0.2, 0.4, 0.7};
-    static const double offsets_m[] = {0.0,
-                                       0.8}; // of the light from where the mirror would show it
+    static const double offsets_m[] = {0.0, 0.8}; // of the light from its mirror image
     for (int i = 0; i < 6; i++) {
         double roughness = roughnesses[i % 3];
         const float eye[3] = {1.2f, 0.0f, 1.5f};
@@ -395,9 +395,9 @@ static struct scene *load_builtin_without_sky(const char *name)
     return scene;
 }
 
-// Means over the image: the renderer takes an emitter's shadow from its centre, which moves
-// light, but on the whole neither adds nor loses much. Both look along the same rays: a light is
-// much brighter than what it lights, and few pixels wide.
+// Means over the image: the renderer casts an emitter's shadow from its centre, which moves light,
+// but on the whole neither adds nor loses much. Both use the same camera rays: a light is much
+// brighter than what it lights, and few pixels wide.
 static void check_direct_light(struct gi_report *report, struct scene *scene, double tolerance)
 {
     struct frame_params frame = gi_params(96, 96, GI_METHOD_NONE);

@@ -78,7 +78,7 @@ static void test_spot_follows_its_cone(void **state)
         light.intensity = 7.0f;
         light.inner_cone_rad = (float)inner;
         light.outer_cone_rad = (float)outer;
-        // The light stays before the centre and turns away from it.
+        // The light stays in front of the centre and turns away from it.
         scene_add_light(scene, &light, (float[3]){0, 0, 2},
                         (float[3]){(float)sin(angles[i]), 0, -(float)cos(angles[i])});
         double scale = 1.0 / fmax(0.001, cos(inner) - cos(outer));
@@ -252,7 +252,8 @@ static void test_shadow_blocks_all_light(void **state)
                                                   SCENE_LIGHT_SPOT};
     for (int i = 0; i < 3; i++) {
         struct scene *scene = test_square_scene(1.0f, 0.5f);
-        // The same square again, smaller, between light and receiver but beside the line of sight.
+        // The same square again, smaller, between light and receiver but out of the camera's view
+        // of it.
         uint32_t node = scene_add_node(scene, "blocker", SCENE_NONE);
         scene->nodes[node].mesh = 0;
         scene_set_node_transform(scene, node, (float[3]){0.5f, 0, 0.5f}, (float[4]){0, 0, 0, 1},
@@ -269,8 +270,8 @@ static void test_shadow_blocks_all_light(void **state)
     }
 }
 
-// A plate of 4 cm, 3 cm above a floor of 60 m, as eaves and ledges are in a building: the sun's
-// cascades resolve it, so the offset against acne must be of their texels.
+// A plate of 4 cm, 3 cm above a floor of 60 m, like the eaves and ledges of a building. The sun's
+// cascades resolve it, so the bias against acne must be measured in their texels.
 static void test_small_things_cast_shadows_in_large_scenes(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-// Proves that a view by the method `reference` shows what the path tracer computes, through the
-// same outputs as every other image, shows direct light until then, and leaves nothing behind
-// when the method changes.
+// Proves that a view with the method `reference` shows what the path tracer computes, through the
+// same outputs as every other image, shows direct light until then, and leaves nothing behind when
+// the method changes.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -115,7 +115,7 @@ static void test_view_shows_the_reference(void **state)
     gi_mean(fixture.pixels, EDGE, EDGE, mean);
     gi_check_ratio(&report, mean[0], mean_of_traced(), 0.05, "view by reference, %u samples",
                    fixture.samples);
-    // An edit starts it anew; a row that draws at half the size does not matter to it.
+    // An edit starts it anew; a row that draws at half the size does not affect it.
     fixture.params.quality = QUALITY_DRAFT;
     struct scene_material black = fixture.scene->materials[0];
     for (uint32_t i = 0; i < fixture.scene->material_count; i++) {

@@ -1,7 +1,7 @@
-// Proves that views do not change each other's images: one with settings of its own has voxels of
-// its own, one that takes shadow cascades leaves those of others where they were, and when shared
-// settings change, more views than there are volumes can be drawn. How: images of a view that is
-// drawn anew after its neighbour are compared bit by bit.
+// Proves that views do not change each other's images: a view with settings of its own has voxels
+// of its own, a view that takes shadow cascades leaves those of others unchanged, and when shared
+// settings change, more views than there are volumes can be drawn. Images of a view that is drawn
+// anew after its neighbour are compared bit by bit.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,7 +41,7 @@ static bool same_pixels(const struct test_picture *a, const struct test_picture 
            memcmp(a->pixels, b->pixels, (size_t)4 * a->width * a->height * sizeof(float)) == 0;
 }
 
-// Draws anew; how many frames it took to settle.
+// Draws anew; returns how many frames it took to converge.
 static uint32_t draw_anew(struct view *view, const struct frame_params *params,
                           struct test_picture *out_picture)
 {
@@ -51,7 +51,7 @@ static uint32_t draw_anew(struct view *view, const struct frame_params *params,
     return frames;
 }
 
-// A shared grid is set back by a neighbour with other bounces; one of its own is not.
+// A neighbour with other bounces resets a shared grid, but not one of its own.
 static void test_own_voxels(void **state)
 {
     (void)state;
@@ -87,7 +87,7 @@ static void test_own_voxels(void **state)
     gi_report_finish(&report);
 }
 
-// Each view is drawn once by the old settings, then once by the new.
+// Each view is drawn once with the old settings, then once with the new ones.
 static void test_many_views(void **state)
 {
     (void)state;
@@ -108,7 +108,7 @@ static void test_many_views(void **state)
         assert_true(renderer_view_collect(renderer, view, true, &pixels));
         renderer_view_release(renderer, view);
     }
-    // Views that must not share one are refused in words, and others are not.
+    // Views that must not share a grid are refused in words; others are not.
     params.own_voxels = true;
     for (uint32_t i = 0; i < MANY; i++) {
         bool fits = i < GI_MAX_OWN_VOLUMES;
@@ -126,9 +126,9 @@ static void test_many_views(void **state)
     hide(&scene);
 }
 
-// Draws the view, a neighbour of higher quality, whose cascades need more layers than there are so
-// that all are drawn anew, and the view again. Its camera has moved, so that its cascades lie where
-// they would not lie if they were placed now.
+// Draws the view, then a neighbour of higher quality, whose cascades need more layers than there
+// are, so that all are drawn anew, and then the view again. The camera has moved meanwhile, so that
+// cascades placed now would lie elsewhere than those that it still uses.
 static bool check_cascades(float step_m)
 {
     struct renderer *renderer = test_renderer();

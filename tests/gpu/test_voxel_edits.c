@@ -1,5 +1,5 @@
-// Proves which edits voxelize: those of lights and materials never do, the camera's and objects'
-// motion does, and an image that repeats does nothing at all. Reads the frame's statistics.
+// Proves which edits voxelize: those of lights and materials never do, motion of camera and objects
+// does, and an unchanged image runs nothing at all. Reads the frame's statistics.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -49,7 +49,7 @@ static void begin(struct edited *edited, enum gi_method method)
     gi_scene_camera(edited->scene, &edited->params.camera);
     assert_true(voxelizes(edited));
     assert_false(voxelizes(edited));
-    // Until light has settled for the first time, lack of room may start everything over.
+    // Until light has converged for the first time, a lack of room may restart everything.
     struct test_picture picture = {0};
     assert_true(gi_converge(edited->renderer, edited->view, &edited->params, &picture) > 0);
     gi_picture_finish(&picture);

@@ -1,8 +1,8 @@
-// Proves that voxels are exact: a triangle is entered into a voxel, and into each of its eight
-// halves, if and only if it overlaps that closed cube. Each triangle is an object of its own, so
-// that what the volume holds of it can be told; what it must hold is found by testing all voxels
-// around it on the 13 separating axes of a triangle and a cube, in double precision. Then: that
-// neither the order of triangles nor the number of threads changes anything.
+// Proves that voxels are exact: a triangle is recorded in a voxel, and in each of its eight halves,
+// if and only if it overlaps that closed cube. Each triangle is an object of its own, so that its
+// voxels can be told apart. The expected voxels are found by testing all voxels around it on the 13
+// separating axes of a triangle and a cube, in double precision. Also proves that neither the order
+// of triangles nor the number of threads changes anything.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

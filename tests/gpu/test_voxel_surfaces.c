@@ -1,6 +1,7 @@
-// Proves what voxels know of surfaces: a texture's mean colour within the rounding of its smallest
-// level, alpha and transmission as optical depth, an emissive texture as radiance, and the exact
-// mean of thousands of coincident triangles, with no overflow where there are more than sums hold.
+// Proves what voxels record of surfaces: a texture's mean colour within the rounding of its
+// smallest level, alpha and transmission as optical depth, an emissive texture as radiance, and the
+// exact mean of thousands of coincident triangles, without overflow where there are more than sums
+// can hold.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -126,7 +127,7 @@ static double linear_of(uint8_t byte)
     return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
 }
 
-// An image of random squares, every other one clear; and its mean, linear.
+// An image of random squares, every other one transparent; and its mean, linear.
 static uint32_t add_picture(struct scene *scene, double out_mean[4])
 {
     uint8_t *rgba = malloc((size_t)IMAGE_EDGE * IMAGE_EDGE * 4);
@@ -206,7 +207,7 @@ static void test_texture_gives_its_mean_colour(void **state)
     }
 }
 
-// The texture once over the whole sheet: no voxel has its mean, but all together do.
+// The texture spans the whole sheet once: no single voxel has its mean, but all together do.
 static void test_large_texture_keeps_its_mean(void **state)
 {
     (void)state;
@@ -284,7 +285,7 @@ static void test_emissive_texture_shines(void **state)
     scene_destroy(&scene);
 }
 
-// `count` times the same triangle, which covers two voxels and more, in colours by turns.
+// `count` copies of the same triangle, which covers more than two voxels, in alternating colours.
 static struct voxel_records coincident(uint32_t count, double out_mean[3])
 {
     float *triangles = malloc(sizeof(float) * 9 * count),

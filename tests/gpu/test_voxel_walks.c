@@ -1,8 +1,8 @@
-// Proves that voxels which follow a camera and moving objects are those of a volume that was filled
-// on the spot: after random walks of either and of both all surfels are the same to the bit, the
-// radiance of all levels and mips is the same but for the order of sums, only what has come into
-// reach or has moved is voxelized, and nothing leaks. Then: that filtering where addresses wrap
-// around equals filtering voxels laid out in a row.
+// Proves that voxels which follow a camera and moving objects equal those of a volume that was
+// filled on the spot. After random walks of either and of both, all surfels are the same to the
+// bit; the radiance of all levels and mips is the same up to the order of sums; only what has come
+// into reach or has moved is voxelized; and nothing leaks. Also proves that filtering across
+// addresses that wrap around equals filtering of voxels laid out in a row.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -111,7 +111,7 @@ static void end_walk(struct walk *walk)
     scene_destroy(&walk->scene);
 }
 
-// Less than a voxel, some voxels, or to another place altogether.
+// Less than a voxel, some voxels, or to another position altogether.
 static void step_camera(struct walk *walk)
 {
     double kind = voxel_random(&walk->seed);
@@ -154,7 +154,8 @@ static float *read_texels(const struct gpu_texture *texture, size_t *out_values)
     return texels;
 }
 
-// Values of the radiance textures that differ by more than halves and the order of sums explain.
+// Counts values of the radiance textures that differ by more than rounding to halves and the order
+// of sums explain.
 static size_t count_radiance_differences(const struct voxel_volume *a, const struct voxel_volume *b)
 {
     size_t count, other, differences = 0, lit = 0;
@@ -241,8 +242,8 @@ static uint32_t voxels_of_level(const struct voxel_volume *volume, uint32_t leve
     return voxels;
 }
 
-// From a place where every level's region is about to move: at most three slabs a level, and on a
-// step along one axis one.
+// From a position where every level's region is about to move: at most three slabs a level, and one
+// on a step along one axis.
 static void test_only_what_comes_into_reach_is_voxelized(void **state)
 {
     (void)state;
@@ -269,7 +270,7 @@ static void test_only_what_comes_into_reach_is_voxelized(void **state)
     end_walk(&walk);
 }
 
-// An object that moves makes dirty what it leaves and where it goes, and nothing else.
+// An object that moves marks what it leaves and where it goes, and nothing else.
 static void test_only_where_objects_move_is_voxelized(void **state)
 {
     (void)state;
@@ -286,7 +287,7 @@ static void test_only_where_objects_move_is_voxelized(void **state)
                 boxes[0] *= (before.bounds_max[axis] - before.bounds_min[axis]) / edge + 6.0;
                 boxes[1] *= (after->bounds_max[axis] - after->bounds_min[axis]) / edge + 6.0;
             }
-            // Boxes that overlap are taken together.
+            // Overlapping boxes are merged.
             bool together = walk.volume->dirty[level].count < 2;
             double maximum = boxes[0] + boxes[1];
             assert_true(voxels_of_level(walk.volume, level) <= (together ? 4.0 : 1.0) * maximum);
@@ -313,7 +314,7 @@ static void test_pools_do_not_leak(void **state)
                                       {COUNTER_SURFELS, COUNTER_FREE_SURFELS},
                                       {COUNTER_FACES, COUNTER_FREE_FACES}};
         for (int i = 0; i < 3; i++) {
-            // The number of free ones is below 0 until it is mended.
+            // The number of free ones may be below 0 until the free lists are rebuilt.
             int32_t free_ones = (int32_t)counters[pools[i][1]];
             uint32_t used = counters[pools[i][0]] - (uint32_t)(free_ones > 0 ? free_ones : 0);
             maximum[i] = used > maximum[i] ? used : maximum[i];
@@ -330,7 +331,7 @@ static void test_pools_do_not_leak(void **state)
     end_walk(&walk);
 }
 
-// Where lighting has found no room for face records, the next voxelization makes it.
+// Where lighting found no room for face records, the next voxelization makes room.
 static void test_face_records_grow(void **state)
 {
     (void)state;
@@ -397,8 +398,8 @@ static float *unwrap(const struct texels *texels, const struct voxel_level_block
     return values;
 }
 
-// A place in voxels from the level's lowest corner, no nearer to its rim than half a voxel; mostly
-// within half a voxel of where addresses wrap around.
+// A position in voxels from the level's lowest corner, no nearer to its rim than half a voxel;
+// mostly within half a voxel of where addresses wrap around.
 static void random_position(uint64_t *seed, const struct voxel_level_block *level, double out[3])
 {
     for (int axis = 0; axis < 3; axis++) {

@@ -46,7 +46,7 @@ async function measure(count) {
 }
 
 const daemon = await startDaemon([values.scene]);
-// The image fills what the bar leaves when the panel is shut.
+// The image fills what the bar leaves when the panel is closed.
 const browser = await openBrowser({ width: STAGE.width, height: STAGE.height + 44 });
 try {
   const { page } = browser;

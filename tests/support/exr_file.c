@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define HEADER_BYTES 1024u // and more than what any header takes
+#define HEADER_BYTES 1024u // more than any header takes
 
 struct writer {
     uint8_t *bytes;
@@ -102,7 +102,7 @@ static void put_header(struct writer *writer, const struct exr_file_params *para
     put_byte(writer, 0);
 }
 
-// By arithmetic, not by the bits that the decoder moves.
+// By arithmetic rather than by the bits that the decoder handles.
 static uint16_t half_of(float value)
 {
     uint16_t sign = signbit(value) ? 0x8000 : 0;

@@ -120,7 +120,7 @@ void stability_keep(struct stability_run *run, const struct picture *picture, co
 // Mean LDR-FLIP between two images, both displayed with the second one's automatic exposure.
 double stability_flip(const struct picture *test, const struct picture *expected);
 
-// Greatest difference of a channel, relative to the brightest of `truth`; `out_pixel` (or NULL)
+// Greatest difference of a channel, relative to the brightest of `expected`; `out_pixel` (or NULL)
 // receives its position. Infinite where a value is not finite.
 double stability_difference(const struct picture *test, const struct picture *expected,
                             uint32_t *out_pixel);
