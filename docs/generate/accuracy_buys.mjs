@@ -66,7 +66,7 @@ function summary(values) {
   return known.length === 1 ? percent(median) : `${percent(median)} (${percent(known[0])} to ${percent(known.at(-1))})`;
 }
 
-/** A table of all steps, over all runs. @param {any[][]} runs configurations of each @returns {string} Markdown, or "" */
+/** A table of all steps, over all runs. @param {any[][]} runs @returns {string} Markdown, or "" */
 export function buysTable(runs) {
   const groups = new Map();
   for (const step of runs.flatMap(stepsOf)) {

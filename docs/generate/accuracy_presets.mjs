@@ -23,7 +23,8 @@ export const rungOfPreset = (rungs, preset) =>
   rungs.find(({ settings }) => settings.preset === preset && settings.scale === 1 && Object.keys(settings.set).length === 0);
 
 /**
- * The point of the front at a preset's time: the configuration that errs least of those at most as slow, itself included.
+ * The point of the front at a preset's time: of the configurations at most as slow, itself included, the one that errs
+ * least.
  * @param {Rung[]} rungs the configurations of one scene
  * @returns {Rung | undefined} none if the preset has no figures
  */

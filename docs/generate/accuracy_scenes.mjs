@@ -1,7 +1,7 @@
 // The scenes of docs/accuracy.md. A path is below the folder of scenes that are not shipped.
 
-// In a scene of `hasCaustics` few bright paths keep the noise of the reference image high however long it is traced: there the
-// number of samples decides, not the noise.
+// In a scene of `hasCaustics` few bright paths keep the noise of the reference image high however long it is traced.
+// There the number of samples decides, not the noise.
 
 /** @typedef {{ name: string, title: string, source?: string, path?: string, hasCaustics?: boolean, about: string }} Scene */
 

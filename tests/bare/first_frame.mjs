@@ -1,6 +1,7 @@
 // A client on another machine than the daemon's: connects, and prints the seconds until the first frame has come. Fails
 // unless the frame is an image and /readyz says ready. With --page, a browser that opens the page must show an image,
-// too. Run: node tests/bare/first_frame.mjs http://127.0.0.1:8080/ [--page]
+// too.
+// Run: node tests/bare/first_frame.mjs http://127.0.0.1:8080/ [--page]
 import assert from 'node:assert/strict';
 
 import { openBrowser } from '../web/browser.mjs';

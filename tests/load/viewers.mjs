@@ -1,6 +1,6 @@
 // Measures how fairly and how fast a daemon serves many viewers: each moves its camera all the time and acknowledges
-// every frame at once. Prints JSON and ends by itself. Only for a daemon on this machine. Run: node
-// tests/load/viewers.mjs --url ws://127.0.0.1:8080 --viewers 8 --seconds 10
+// every frame at once. Prints JSON and ends by itself. Only for a daemon on this machine.
+// Run: node tests/load/viewers.mjs --url ws://127.0.0.1:8080 --viewers 8 --seconds 10
 import { parseArgs } from 'node:util';
 
 import { Client, sleep } from '../web/client.mjs';

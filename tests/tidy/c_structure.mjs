@@ -1,5 +1,5 @@
-// What a C, C++ or GLSL file consists of, as far as these tests ask: its functions with the words that their
-// bodies use, and the words of initialisers and macros.
+// The structure of a C, C++ or GLSL file, as far as these tests need it: its functions with the words that their bodies
+// use, and the words of initializers and macros.
 
 /** @typedef {import('./c_tokens.mjs').Token} Token */
 
@@ -25,7 +25,7 @@ const AFTER_PARAMETERS = ['const', 'noexcept', 'override', 'final'];
 const isMark = (token, text) => token?.kind === 'mark' && token.text === text;
 const isWord = (token, words) => token?.kind === 'word' && words.includes(token.text);
 
-/** The indices of tokens that stand in no parentheses; of those, only the opening one. */
+/** The indices of tokens that are in no parentheses; of parentheses, only the opening one. */
 function outerIndices(head) {
   let depth = 0;
   const outer = [];
@@ -37,11 +37,11 @@ function outerIndices(head) {
   return outer;
 }
 
-/** Where a constructor's initialisers begin, by their colon; -1 if there are none. */
+/** The index of the colon at which a constructor's initializers begin; -1 if there are none. */
 const initializerIndex = (head, outer) =>
   outer.find((index) => isMark(head[index], ':') && isMark(head[index - 1], ')')) ?? -1;
 
-/** The index of a function's name in the tokens before its body; -1 if they begin no function. */
+/** The index of a function's name in the tokens before its body; -1 if they do not begin a function. */
 function nameIndex(head) {
   const outer = outerIndices(head);
   const operator = head.findIndex((token) => isWord(token, ['operator']));
@@ -81,7 +81,7 @@ function braceAfter(head, language) {
 /** Whether `name` at `at` is qualified by itself, as constructors are. */
 const isOwner = (head, at, name) => isMark(head[at - 1], ':') && isWord(head[at - 3], [name]);
 
-/** Words that may call or read; in C and GLSL a member says nothing of a function of its name. */
+/** Words that may call or read. In C and GLSL a member does not count as a use of a function of its name. */
 function addUses(uses, tokens, language) {
   tokens.forEach((token, index) => {
     if (token.kind !== 'word') return;
@@ -151,7 +151,7 @@ class StructureReader {
     this.#head = [];
   }
 
-  /** Every branch of an #if begins with what was open before it, so that braces stay in pairs. */
+  /** Every branch of an #if begins with the braces that were open before it, so that braces stay in pairs. */
   #addDirective({ text, inner }) {
     if (text.startsWith('if')) this.#branches.push({ open: [...this.#open], head: [...this.#head] });
     else if (text === 'endif') this.#branches.pop();

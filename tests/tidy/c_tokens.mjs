@@ -1,5 +1,5 @@
-// C, C++ and GLSL as tokens. Comments are gone, a string is one token, and a preprocessor line is one token
-// that holds its own.
+// C, C++ and GLSL as tokens. Comments are dropped, a string is one token, and a preprocessor line is one token with
+// inner tokens.
 
 /**
  * @typedef {object} Token
@@ -9,7 +9,7 @@
  * @property {Token[]} [inner]  of a directive: what follows its name
  */
 
-// Raw strings come before words, as their prefix is one; numbers take C++'s digit separators.
+// Raw strings come before words, as their prefix is a word; numbers may hold C++'s digit separators.
 const TOKEN = new RegExp(
   [
     String.raw`(?<space>[ \t\r\f]+|\\\r?\n)`,

@@ -1,11 +1,11 @@
-// Functions and macros of the product that nothing in the product names: what nobody calls is deleted.
+// Functions and macros of the product that nothing in the product names: code without a caller is deleted.
 import { readStructure } from './c_structure.mjs';
 import { tokensOf } from './c_tokens.mjs';
 
 /** @typedef {import('./files.mjs').SourceFile} SourceFile */
 /** @typedef {{ path: string, line: number, name: string, what: 'function' | 'macro' }} Unused */
 
-/** Macros that are for whom we include, who reads them: prefixes of their names. */
+/** Macros that libraries read, whose headers we include: prefixes of their names. */
 const FOR_LIBRARIES = ['STB_', 'STBI_', 'STBIR_', 'TINYGLTF_', 'TINYOBJLOADER_', 'CGLM_', '_GNU_SOURCE'];
 
 const HEADER_GUARD = /_(H|HPP)$/;
@@ -55,10 +55,7 @@ function unusedMacros(files) {
   return defined.filter((macro) => isOurs(macro) && !used.has(macro.name) && !pasted.some((part) => part(macro.name)));
 }
 
-/** Defines for shaders stand in strings: "STAGE LISTS_RESET\\n". */
-const definesIn = (string) => string.replaceAll('\\n', ' ').match(/\b[A-Z][A-Z0-9_]+\b/g) ?? [];
-
-/** Names that macros build: for PREFIX_##x all that begin so, for x##_SUFFIX all that end so. */
+/** Names that macros build: for PREFIX_##x all names with that prefix, for x##_SUFFIX all names with that suffix. */
 function pastedParts(files) {
   const parts = [];
   for (const file of files)
@@ -75,7 +72,7 @@ function pastedParts(files) {
   return parts;
 }
 
-/** "#ifndef X" before "#define X" reads nothing of X. */
+/** "#ifndef X" before "#define X" does not use X. */
 const isDefault = (token, next) =>
   token.text === 'ifndef' && next?.text === 'define' && next.inner[0]?.text === token.inner[0].text;
 

@@ -1,4 +1,4 @@
-// Functions that only tests call, each with the reason for which it stays. The list may only shrink.
+// Functions that only tests call, each with the reason for keeping it. The list may only shrink.
 
 /** @type {Record<string, string>} */
 export const CALLED_BY_TESTS = {

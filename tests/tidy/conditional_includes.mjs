@@ -1,11 +1,11 @@
-// Shaders include each file once, wherever that is. So what a file under a condition includes must be there before,
-// or it is missing wherever the condition does not hold.
+// Shaders include each file once, wherever that is. So what a file under a condition includes must be included before,
+// or it is missing where the condition does not hold.
 import { findIncludes } from './includes.mjs';
 import { tokensOf } from './c_tokens.mjs';
 
 /** @typedef {import('./files.mjs').SourceFile} SourceFile */
 
-/** Lines of a file at which a condition of the preprocessor holds or not. */
+/** Lines of a file at which a preprocessor condition begins or ends. */
 function conditionalLines(file) {
   const lines = new Set();
   let depth = 0;
@@ -24,7 +24,7 @@ function conditionalLines(file) {
  */
 export function judgeConditionalIncludes(shaders) {
   const conditional = new Map(shaders.map((file) => [file.path, conditionalLines(file)]));
-  // Header guards are no conditions.
+  // Header guards do not count as conditions.
   const includes = findIncludes(shaders).map((include) => ({
     ...include,
     conditional: !include.path.endsWith('.h') && conditional.get(include.path).has(include.line),

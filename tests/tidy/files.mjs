@@ -1,4 +1,4 @@
-// The files that are ours: what git keeps or would keep, so neither packages nor what a build makes.
+// Our source files: what git tracks or would add, so neither packages nor build outputs.
 import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -1,4 +1,4 @@
-// Who includes whom, and who calls GL: judged by the table of layers.
+// Includes and calls of GL, judged by the table of layers.
 import { tokensOf } from './c_tokens.mjs';
 
 /** @typedef {import('./files.mjs').SourceFile} SourceFile */
@@ -25,7 +25,7 @@ export function findIncludes(files) {
   );
 }
 
-/** The row of the innermost folder that a file lies in. */
+/** The row of the innermost folder that holds a file. */
 function layerOf(path, layers) {
   return layers
     .filter(({ folder }) => path.startsWith(`${folder}/`))

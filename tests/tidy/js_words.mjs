@@ -1,4 +1,4 @@
-// The identifiers of a JS file: without comments, strings and regular expressions, but with what stands in `${}`.
+// The identifiers of a JS file: without comments, strings and regular expressions, but with the code inside `${}`.
 
 /** @typedef {{ text: string, line: number }} Word */
 
@@ -17,7 +17,7 @@ const REGULAR_EXPRESSION = /\/(?:\\.|\[(?:\\.|[^\]\\\n])*\]|[^/\\\n[])+\/[a-z]*/
 /** The text of a template up to its end or to the next `${`. */
 const TEMPLATE = /(?:\\[\s\S]|\$(?!\{)|[^`\\$])*(?<end>`|\$\{|$)/y;
 
-/** A slash after these begins a regular expression; after a value it divides. */
+/** After these a slash begins a regular expression; after a value it divides. */
 const KEYWORDS = 'await|case|delete|do|else|in|new|of|return|throw|typeof|void|yield';
 const BEFORE_VALUES = new RegExp(String.raw`^(?:[(,=:[!&|?{};+\-*%<>~^]|${KEYWORDS})$`);
 

@@ -1,5 +1,5 @@
-// Which folder may include which: the one table. A folder may include itself and what its row lists: folders as they
-// stand in a row of their own, without what lies in them, or single headers.
+// Which folder may include which: the one table. A folder may include itself and what its row lists: single headers, or
+// folders. A listed folder does not stand for folders inside it that have rows of their own.
 
 /** @typedef {{ folder: string, may: string[], why: string }} Layer */
 /** @typedef {{ from: string, to: string, why: string }} Arrow  a file that includes a header against the table */
@@ -7,11 +7,11 @@
 /** Made by CMake: where sources and shaders lie. */
 const PATHS = 'voxcast_paths.h';
 
-/** Plain data and small services that stand below all rooms of the renderer. */
+/** Plain data and small services below all folders of the renderer. */
 const BASE = ['renderer/error.h', 'renderer/log.h', 'renderer/clock.h'];
 const SETTINGS = ['renderer/settings.h', 'renderer/parameter_types.h'];
 
-/** What whoever uses the renderer may know beside renderer.h: plain data and pure functions. */
+/** What users of the renderer may include besides renderer.h: plain data and pure functions. */
 const API = ['renderer/renderer.h', 'renderer/camera.h', 'renderer/metrics', ...BASE, ...SETTINGS];
 
 /** @type {Layer[]} */

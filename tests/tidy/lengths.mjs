@@ -1,5 +1,5 @@
-// Lengths of files, lines and functions. What is too long today stands in lengths_allowed.json with its figure,
-// which may only fall.
+// Lengths of files, lines and functions. lengths_allowed.json lists what is too long today with its figure, which may
+// only fall.
 import { readStructure } from './c_structure.mjs';
 import { tokensOf } from './c_tokens.mjs';
 import { isCode } from './files.mjs';

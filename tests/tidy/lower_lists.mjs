@@ -1,5 +1,5 @@
-// Lowers the figures of the lists to what there is, and takes off what is gone: node tests/tidy/lower_lists.mjs.
-// Raises none, and knows nothing of files that have moved.
+// Lowers the figures of the lists to the present ones and removes entries that are no longer needed: node
+// tests/tidy/lower_lists.mjs. Raises none, and does not follow files that have moved.
 import { readFileSync, writeFileSync } from 'node:fs';
 
 import { isCode, readSources } from './files.mjs';
@@ -7,7 +7,7 @@ import { findBanned } from './identifiers.mjs';
 import { findExcesses } from './lengths.mjs';
 import { BANNED } from './words.mjs';
 
-/** The figures of `list` that are still needed, none higher than it was. */
+/** The figures of `list` that are still needed, none higher than before. */
 function lowered(list, figureOf) {
   const entries = Object.entries(list).map(([key, kept]) => [key, Math.min(kept, figureOf(key))]);
   return Object.fromEntries(entries.filter(([, figure]) => figure > 0));

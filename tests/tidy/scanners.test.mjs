@@ -1,5 +1,5 @@
-// Proves that every rule of tidy.test.mjs can fail: a small sample that breaks it is found, with file, line and limit,
-// one that keeps it passes, and a list that allows more than there is fails, too.
+// Proves that every rule of tidy.test.mjs can fail: a small sample that breaks it is found, with file, line and limit;
+// one that keeps it passes; and a list that allows more than there is fails, too.
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 
@@ -17,7 +17,7 @@ const file = (path, text) => ({ path, text, language: languageOf(path) });
 const functionsOf = (text, language) => readStructure(tokenize(text), language).functions;
 const namesOf = (text, language) => functionsOf(text, language).map(({ name }) => name);
 
-/** A function of so many lines. */
+/** A function of this many lines. */
 const longFunction = (lines) => `int f(void)\n{\n${'    ;\n'.repeat(lines - 3)}}\n`;
 
 describe('tokens', () => {

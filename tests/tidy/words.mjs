@@ -1,4 +1,4 @@
-// Words that identifiers do not use, since the field has others for what they mean.
+// Words that identifiers do not use, since the field has others for them. docs/GLOSSARY.md explains the words to use.
 
 /**
  * @typedef {object} BannedWord

@@ -1,5 +1,5 @@
-// Small scenes and images for tests of the reference path tracer. All fail the test when memory
-// ends.
+// Small scenes and images for tests of the reference path tracer. All functions fail the test when
+// memory ends.
 #ifndef VOXCAST_TESTS_UNIT_SUPPORT_REFERENCE_H
 #define VOXCAST_TESTS_UNIT_SUPPORT_REFERENCE_H
 
@@ -30,11 +30,11 @@ void support_add_box(struct scene *scene, uint32_t material, const float low[3],
 // 16x16 pixels of a very narrow view from `eye` to `target`, unlimited bounces.
 struct reference_params support_narrow_view(const float eye[3], const float target[3]);
 
-// A reference of the scene as it is now; params->scene is filled in. To be destroyed.
+// A reference of the scene as it is now; fills in params->scene. The caller destroys it.
 struct reference *support_reference_create(const struct scene *scene,
                                            const struct reference_params *params);
 
-// Means of red, green and blue over the image of a set of layers after so many samples.
+// Means of red, green and blue over the image of a set of layers after this many samples.
 void support_reference_mean(const struct scene *scene, const struct reference_params *params,
                             uint32_t samples, uint32_t layers, double out_mean[3]);
 

@@ -36,7 +36,8 @@ void support_check_scene(const struct scene *scene)
     if (wrong) {
         fail_msg("%s", wrong);
     }
-    // Of files; edits may turn cones inside out, which then count as one.
+    // Holds for files; edits may make the inner cone larger than the outer one, and then both count
+    // as one.
     for (uint32_t i = 0; i < scene->light_count; i++) {
         assert_true(scene->lights[i].inner_cone_rad <= scene->lights[i].outer_cone_rad);
     }

@@ -1,6 +1,6 @@
-// Proves that the asset cache gives back what it was given for an unchanged file only, evicts the
-// least recently used images beyond its budget, and counts references rightly across threads.
-// How: images made in memory under made-up paths, so that no file is read.
+// Proves that the image cache returns an image only for an unchanged file, evicts the least
+// recently used images beyond its budget, and counts references correctly across threads. Uses
+// images made in memory under made-up paths, so that no file is read.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -37,7 +37,7 @@ static int reset_cache(void **state)
     return 0;
 }
 
-// Puts a new image and keeps no reference of our own.
+// Adds a new image and keeps no reference of our own.
 static void put_new(const struct asset_key *key)
 {
     struct image *image = make_image();

@@ -1,7 +1,7 @@
 // Proves that the built-in scenes are sound: complete and finite data, fronts that agree with the
 // normals, no triangles without area, closed shapes of the right size, the same bytes in every
-// build, and cameras that see fronts, never the inside of a wall, nor two surfaces in one place.
-// How: each scene is built twice and inspected; rays from its cameras tell what can be seen.
+// build, and cameras that see fronts, never the inside of a wall, nor two coincident surfaces. Each
+// scene is built twice and inspected; rays from its cameras show what can be seen.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -169,7 +169,7 @@ static const struct scene_primitive *find_primitive(const struct scene *scene, c
     return NULL;
 }
 
-// By the divergence theorem; positive where the fronts are outside.
+// By the divergence theorem; positive if the fronts are outside.
 static double volume_of(const struct scene *scene, const struct scene_primitive *primitive)
 {
     double volume = 0;
@@ -222,11 +222,11 @@ static void test_objects_of_one_kind(void **state)
         assert_true(lacquer->roughness < 0.2f && lacquer->ior > 1.0f && lacquer->metallic == 0.0f);
         const struct scene_material *clear = material_of(glass, objects[i]);
         assert_true(clear->transmission == 1.0f && clear->roughness == 0.0f);
-        // What is closed refracts; the pot's wall is thin.
+        // Closed objects refract; the pot's wall is thin.
         assert_true((clear->thickness_m > 0.0f) == (i != 0));
         assert_true(emission_of(material_of(emissive, objects[i])) > 0.1f);
     }
-    // Nothing else shines there, and nothing shines by itself but the light elsewhere.
+    // Nothing else emits there, and in the other scenes nothing but the light emits.
     assert_true(emission_of(material_of(emissive, "lamp")) == 0.0f);
     assert_true(emission_of(material_of(glass, "lamp")) > 10.0f);
     assert_int_equal(emissive->light_count, 0);
@@ -293,8 +293,7 @@ static bool triangle_holds(double corners[3][3], const double point[3])
     return true;
 }
 
-// How many triangles of one node lie where the hit is, in its plane. Nodes are turned and moved
-// alone.
+// How many triangles of one node lie at the hit, in its plane. Nodes are only rotated and moved.
 static uint32_t count_at_hit(const struct scene *scene, const struct scene_node *node,
                              const struct ray_hit *hit)
 {

@@ -1,4 +1,4 @@
-// Proves that the offline tool's options reach their places, and that what is out of range is
+// Proves that the offline tool's options reach their targets, and that values out of range are
 // refused with the usage status: each line is parsed as a command would parse it.
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +22,7 @@ struct values {
 
 #define MAX_WORDS 32
 
-// Parses a line whose words have one space between; the texts live as long as `line`.
+// Parses a line whose words are separated by single spaces; the texts live as long as `line`.
 static bool parse(struct values *values, char *line, int *out_status)
 {
     char *words[MAX_WORDS + 1] = {"test"};

@@ -1,5 +1,5 @@
 // Proves that every parameter is bound to a field of its own: sets each to two values and reads it
-// back, and that text keys of the offline tool reach the right field or are refused with reasons.
+// back. Also that text keys of the offline tool reach the right field or are refused with reasons.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -53,13 +53,13 @@ static int tear_down(void **state)
     return 0;
 }
 
-// A value inside the range, other than the default and for each component another.
+// A value inside the range, different from the default and for each component.
 static struct parameter_value sample(const struct parameter *parameter, int which)
 {
     struct parameter_value value = {.parameter = parameter};
     uint32_t count = parameter_component_count(parameter->type);
     for (uint32_t i = 0; i < count; i++) {
-        // The eye must not lie in the target.
+        // The eye must differ from the target.
         double fraction =
             (strcmp(parameter->name, "eye") == 0 ? 0.25 : 0.2) + 0.1 * i + 0.3 * which;
         value.numbers[i] =
@@ -111,7 +111,7 @@ static void setting_one_changes_no_other(void **state)
         assert_true(document_set(&fixture->document, changed->group, 0, &set, 1, &error));
         for (size_t p = 0; p < parameter_count(); p++) {
             const struct parameter *other = parameter_at(p);
-            // Node 0 carries light 0, so that their places move together.
+            // Node 0 carries light 0, so that their positions change together.
             bool is_placement = (other->group == GROUP_LIGHT || other->group == GROUP_NODE) &&
                                 other->type != PARAMETER_COLOR &&
                                 parameter_component_count(other->type) > 1;

@@ -1,6 +1,6 @@
-// Proves that a loaded environment is an edit: undo and redo bring images back, steps of undo keep
-// them alive and no longer than that, and no more of them than the limit allows. How: edits of an
-// empty scene; reference counts tell who holds an image.
+// Proves that loading an environment is an edit: undo and redo bring images back, undo steps keep
+// images alive exactly as long as needed, and no more of them than the limit allows. Edits an empty
+// scene; reference counts show who holds an image.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -46,7 +46,7 @@ static struct environment_image *make_image(const char *name)
     return image;
 }
 
-// Loads it, and gives up the test's own reference.
+// Loads it, and releases the test's own reference.
 static void load(struct fixture *fixture, struct environment_image *image)
 {
     cJSON *edit = edit_load_environment(&fixture->document, &fixture->history, image);
@@ -86,7 +86,7 @@ static void undo_and_redo_bring_images_back(void **state)
     replay(fixture, METHOD_EDIT_REDO);
     assert_ptr_equal(environment->image, a);
     assert_int_equal(fixture->scene->revisions.environment, revision + 5);
-    // A new edit forgets what was to be redone.
+    // A new edit drops the steps that could be redone.
     load(fixture, make_image("c"));
     assert_string_equal(environment->image->name, "c");
     edit_history_clear(&fixture->history);
@@ -100,16 +100,16 @@ static void steps_keep_no_more_than_the_limit(void **state)
     struct fixture *fixture = *state;
     for (int i = 0; i < 4; i++) {
         struct environment_image *image = make_image("large");
-        image->width = 8192; // 192 MiB, as far as the history can tell
+        image->width = 8192; // 192 MiB, as far as the history can know
         image->height = 2048;
         load(fixture, image);
     }
-    // Before them were nothing and three images, of which two fit.
+    // The steps keep nothing and three images, of which two fit.
     assert_int_equal(fixture->history.count, 2);
     assert_int_equal(fixture->history.position, 2);
     for (int i = 0; i < 2; i++) {
         struct environment_image *image = make_image("huge");
-        image->width = 16384; // more than the limit: one step is kept all the same
+        image->width = 16384; // more than the limit: one step is kept nevertheless
         image->height = 4096;
         load(fixture, image);
     }

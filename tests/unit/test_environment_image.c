@@ -1,6 +1,6 @@
 // Proves that equirectangular images are read from OpenEXR and Radiance files, or refused with a
-// message that names what is wrong, and that the levels made of them keep all of their light. How:
-// small files written byte by byte, and by the library's encoder where they are compressed.
+// message that names the fault, and that the levels made of them keep all of their light. Small
+// files are written byte by byte, and by the library's encoder where they are compressed.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -74,7 +74,7 @@ static void test_scanlines_and_tiles(void **state)
             }
 }
 
-// What is wrong with each, and what its message must name.
+// The fault of each file, and what its message must name.
 static void test_refused_by_name(void **state)
 {
     (void)state;
@@ -214,7 +214,7 @@ static void test_compressions(void **state)
     }
 }
 
-// A header alone: what is refused by name needs no texels.
+// A header alone: files that are refused by name need no texels.
 static void check_header(exr_storage_t storage, int part_count, exr_compression_t compression,
                          const char *message)
 {
@@ -269,8 +269,8 @@ static void test_radiance_clamps_and_bounds(void **state)
     assert_null(environment_image_decode((const uint8_t *)"", 0, &error));
 }
 
-// A line of runs, each component by itself, and one that repeats its first texel; cut anywhere, and
-// with runs of nothing, which must not be read for ever.
+// A line of runs, each component on its own, and one that repeats its first texel; truncated at
+// every position; and with empty runs, which must not be read for ever.
 static void test_radiance_runs(void **state)
 {
     (void)state;
@@ -297,7 +297,7 @@ static void test_radiance_runs(void **state)
     assert_non_null(strstr(error.message, "damaged at line"));
 }
 
-// The mean of an image over the sphere, by its own texels and by each level's.
+// The mean of an image over the sphere, from its own texels and from each level's.
 static double mean_of(const float *pixels, uint32_t width, uint32_t height)
 {
     double sum = 0.0;

@@ -1,6 +1,6 @@
-// Proves LDR-FLIP by the paper's formulas, evaluated anew, pixel by pixel, in double precision,
-// with two-dimensional filters as the paper writes them (Andersson et al. 2020): images of random
-// blocks, whose every pixel's error must agree. HDR-FLIP is LDR-FLIP at its exposures.
+// Proves LDR-FLIP by the paper's formulas, evaluated again, pixel by pixel, in double precision,
+// with two-dimensional filters as the paper writes them (Andersson et al. 2020). Images are random
+// blocks, and every pixel's error must agree. HDR-FLIP is LDR-FLIP at its exposures.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -113,7 +113,7 @@ static void filtered_lab(plane picture, int x, int y, double pixels_per_degree, 
     hunt_lab(rgb, out);
 }
 
-// Length of the answers along x and y of the first (edges) or second (points) derivative of a
+// Length of the responses along x and y of the first (edges) or second (points) derivative of a
 // Gaussian, whose positive weights sum up to 1 and negative ones to -1.
 static double feature(plane picture, int x, int y, double pixels_per_degree, bool point)
 {
@@ -212,7 +212,7 @@ static void test_every_pixel_agrees(void **state)
         picture_finish(&pictures[i]);
 }
 
-// Each exposure's images, by the curve of the paper, compared as displayed ones.
+// The images at each exposure, by the curve of the paper, compared as displayed images.
 static void test_hdr_is_the_largest_of_its_exposures(void **state)
 {
     (void)state;

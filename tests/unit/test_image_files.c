@@ -1,5 +1,5 @@
-// Proves that image files are decoded with limits held before decoding, and that Radiance files
-// become environments of linear floats. How: tiny images written here byte by byte.
+// Proves that image files are decoded with limits checked before decoding, and that Radiance files
+// become environments of linear floats. Tiny images are written here byte by byte.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
-// Proves the measures of error by perturbations whose values follow by hand: constant offsets and
+// Proves the error metrics by perturbations whose values follow by hand: constant offsets and
 // factors, single bad pixels, known quantiles, and the fixed points of SSIM and FLIP. Files of
-// float images are written, read back, and broken.
+// float images are written, read back, and damaged.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +35,7 @@ static struct picture grey(uint32_t width, uint32_t height, float value)
     return filled(width, height, value, value, value);
 }
 
-// Smooth shading, hard edges, texture and a bright spot: what images of scenes are made of.
+// Smooth shading, hard edges, texture and a bright spot, as in images of scenes.
 static struct picture synthetic(void)
 {
     struct picture picture;
@@ -102,8 +102,7 @@ static void test_constant_offset(void **state)
     assert_near(values[METRIC_RMSE], sqrt((0.01 + 0.015625) / 3.0), 1e-6);
     assert_near(values[METRIC_MAE], (0.1 + 0.125) / 3.0, 1e-6);
     assert_near(values[METRIC_P95], (0.1 + 0.125) / 3.0, 1e-6);
-    // Squared error over 1.01 times the square of the reference image, which is the same
-    // everywhere.
+    // Squared error over 1.01 times the square of the reference image, which is uniform.
     assert_near(values[METRIC_REL_MSE], (0.04 + 1.0) / 1.01 / 3.0, 1e-6);
     assert_near(values[METRIC_ENERGY_RED], 1.2, 1e-6);
     assert_near(values[METRIC_ENERGY_GREEN], 1.0, 1e-6);
@@ -154,7 +153,7 @@ static void test_pixels_that_are_not_finite(void **state)
     assert_near(metrics.values[METRIC_ENERGY_GREEN], 1.2, 1e-6);
     for (int i = 0; i < METRIC_COUNT; i++)
         assert_true(isfinite(metrics.values[i]));
-    // They are seen as black.
+    // Pixels that are not finite count as black.
     assert_true(metrics.values[METRIC_PSNR] < 20.0);
     for (size_t i = 0; i < 300; i++)
         test.rgb[i] = NAN;
@@ -168,7 +167,7 @@ static void test_pixels_that_are_not_finite(void **state)
 static void test_ssim(void **state)
 {
     (void)state;
-    // Of constant images, only the term of means is left.
+    // For constant images, only the term of means is left.
     struct picture a = grey(32, 20, 0.5f), b = grey(32, 20, 0.7f);
     double wanted = (2.0 * 0.5 * 0.7 + 1e-4) / (0.25 + 0.49 + 1e-4);
     assert_near(measure(&a, &b, &plain).values[METRIC_SSIM], wanted, 1e-6);

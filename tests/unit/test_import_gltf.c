@@ -1,7 +1,7 @@
 // Proves that glTF files become the right scene: placement, materials, lights, cameras, animations,
-// accessor kinds, primitive modes, generated normals and tangents. How: small files written here as
-// text with data URIs and compared value by value; and the folder of test scenes, where present,
-// for which everything must be finite and in range.
+// accessor kinds, primitive modes, generated normals and tangents. Small files are written here as
+// text with data URIs and compared value by value. In the folder of test scenes, where present,
+// everything must be finite and in range.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
-// Proves that broken and hostile scene files are refused with a message or loaded sanitised, as the
-// folder's manifest says, without crash or hang and in bounded memory. How: each file is loaded in
-// a child process with an alarm; the child reports by its exit status, the parent reads its peak
+// Proves that broken and hostile scene files are refused with a message or loaded sanitized, as the
+// folder's manifest says, without crash or hang and in bounded memory. Each file is loaded in a
+// child process with an alarm. The child reports by its exit status; the parent reads its peak
 // memory (not under sanitizers, which need memory of their own).
 #include <stdarg.h>
 #include <stddef.h>
@@ -36,7 +36,7 @@
 
 enum child_status { CHILD_ACCEPTED = 0, CHILD_REJECTED = 10, CHILD_NO_MESSAGE = 11 };
 
-// Loads the file, checks what it gave, and casts rays, so that wrong data has a chance to hurt.
+// Loads the file, checks the scene, and casts rays, so that wrong data has a chance to do harm.
 static int load_in_child(const char *path)
 {
     struct error error = {{0}};
@@ -64,7 +64,7 @@ static bool is_expected(const cJSON *entry, const char *outcome)
     return strcmp(expect, outcome) == 0 || (also_ok && strcmp(also_ok, outcome) == 0);
 }
 
-// False, with a line that says why, if the file did not do as the manifest says.
+// False, with a line that says why, if the result is not what the manifest says.
 static bool check_file(const char *folder, const cJSON *entry)
 {
     char path[4096];

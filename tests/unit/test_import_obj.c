@@ -1,7 +1,7 @@
 // Proves that OBJ and MTL files become the right scene: faces of any shape, indices, smoothing,
 // materials with and without metallic-roughness keys, masks, bump maps, names with spaces, and
-// confinement to the folder. How: small files written to a temporary folder, compared value by
-// value; and Crytek's Sponza where the folder of test scenes has it unpacked.
+// confinement to the folder. Small files are written to a temporary folder and compared value by
+// value. Also reads Crytek's Sponza where the folder of test scenes has it.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -117,7 +117,7 @@ static void test_smoothing_groups(void **state)
     scene_destroy(&scene);
 }
 
-// A temporary folder with files that a test writes; everything in it goes at the end.
+// A temporary folder with files that a test writes; all of it is removed at the end.
 struct fixture {
     char folder[64];
     char names[8][256];

@@ -1,5 +1,5 @@
 // Proves that the mailbox keeps order, merges drags without losing an edit id, never merges past an
-// undo, and says when it is full: posts commands and takes them out again.
+// undo, and reports when it is full: posts commands and takes them out again.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -114,7 +114,7 @@ static void waiting_ends_by_wake_command_or_deadline(void **state)
     (void)state;
     struct mailbox *mailbox = mailbox_create();
     mailbox_wake(mailbox);
-    mailbox_wait(mailbox, MAILBOX_NO_DEADLINE); // returns: the wake is kept
+    mailbox_wait(mailbox, MAILBOX_NO_DEADLINE); // returns: the wake is remembered
     mailbox_wait(mailbox, 0);                   // returns: the deadline has passed
     post(mailbox, make(METHOD_PICK, 1, 0, 0));
     mailbox_wait(mailbox, MAILBOX_NO_DEADLINE); // returns: a command waits

@@ -1,4 +1,4 @@
-// Proves which source of an option wins and that wrong ones are named: reads command lines,
+// Proves which source of an option wins and that wrong options are named: reads command lines,
 // environments and a file.
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-// Proves that messages are held to their limits before they are parsed, and that requests become
-// commands or the error that PROTOCOL.md states: feeds texts and compares codes and fields.
+// Proves that messages are checked against their limits before they are parsed, and that requests
+// become commands or the error that PROTOCOL.md states: sends texts and compares codes and fields.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -208,7 +208,7 @@ static void errors_tell_field_and_range_in_valid_utf8(void **state)
     assert_true(cJSON_GetObjectItem(data, "max")->valuedouble == 16.0);
     cJSON_Delete(reply);
     free(text);
-    // A key of two-byte letters that the error cuts in the middle of one.
+    // A key of two-byte letters that the error message cuts inside a letter.
     char request[512] = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"pick\",\"params\":{\"a";
     for (int i = 0; i < 60; i++)
         strcat(request, "\xc3\xa9");

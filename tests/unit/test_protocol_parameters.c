@@ -1,5 +1,5 @@
-// Proves that the table of parameters is sound and that PROTOCOL.md and the renderer's limits keep
-// in step with it: walks all rows, reads each default back, and looks rows up in the document.
+// Proves that the table of parameters is sound and that PROTOCOL.md and the renderer's limits agree
+// with it: walks all rows, reads each default back, and looks rows up in the document.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -79,7 +79,8 @@ static void names_are_unique(void **state)
                          parameter_at(i));
 }
 
-// What needs another parameter names one of its group, some of its values but not all, and why.
+// A parameter that needs another names one of its group, some of its values but not all, and a
+// reason.
 static void needs_can_be_met_and_missed(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-// Proves which row of the quality table a view gets: low while it moves, the wanted one when it is
-// still, draft only where frames take too long, and no flapping between the two.
+// Proves which row of the quality table a view gets: a low one while it moves, the wanted one at
+// rest, draft only where frames take too long, and no flapping between the two.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

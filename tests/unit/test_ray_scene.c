@@ -1,5 +1,5 @@
-// Proves that rays meet the triangles that are drawn: nearest hit, placement, mirrored and singular
-// nodes, visibility, alpha-masked holes, and refusal of arguments that are not finite. How: scenes
+// Proves that rays hit the triangles that are drawn: nearest hit, placement, mirrored and singular
+// nodes, visibility, alpha-masked holes, and refusal of arguments that are not finite. Uses scenes
 // of one or two quads with hits known by hand, and the published Cornell box where present.
 #include <stdarg.h>
 #include <stddef.h>
@@ -94,7 +94,7 @@ static void test_hit_is_described(void **state)
     assert_false(cast_down(ray_scene, 1.5f, 0, &hit));
     assert_false(
         ray_scene_intersect(ray_scene, (float[3]){0, 0, 5}, (float[3]){0, 0, -2}, 2.4f, &hit));
-    // From behind, the normal turns to the ray.
+    // From behind, the normal faces the ray.
     assert_true(
         ray_scene_intersect(ray_scene, (float[3]){0, 0, -5}, (float[3]){0, 0, 1}, 100, &hit));
     assert_float_equal(hit.normal[2], -1, TOLERANCE);
@@ -153,7 +153,7 @@ static void test_holes_of_masks(void **state)
     struct ray_hit hit;
     assert_true(cast_down(ray_scene, -0.5f, 0.1f, &hit));
     assert_false(cast_down(ray_scene, 0.5f, 0.1f, &hit));
-    // The same image does not matter to an opaque material, nor after the texture is shifted.
+    // The same image has no effect on an opaque material; with a shifted texture the hole moves.
     material.alpha_mode = SCENE_ALPHA_OPAQUE;
     scene_set_material(scene, 0, &material);
     ray_scene_update_materials(ray_scene);

@@ -1,6 +1,6 @@
-// Proves that aiming at lights and following what surfaces scatter agree, as do both weighted: two
-// independent estimators of the same light, whose only common cause is the physics. How: means over
-// images by many seeds each, whose spread tells what chance allows.
+// Proves that sampling lights, sampling BSDFs and their weighted combination agree: independent
+// estimators of the same light that share only the physics. Compares means over images by many
+// seeds each, whose spread shows what chance allows.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -39,7 +39,7 @@ static struct estimate estimate(const struct scene *scene, struct reference_para
     return (struct estimate){sum, sqrt(variance / SEEDS)};
 }
 
-// `samples` of the weighted estimator; the others get `more` times as many.
+// `samples` for the weighted estimator; the others get `more` times as many.
 static void check_agreement(const char *name, const struct scene *scene,
                             const struct reference_params *params, uint32_t samples,
                             const uint32_t more[2])
@@ -58,7 +58,7 @@ static void check_agreement(const char *name, const struct scene *scene,
     assert_true(weighted.standard_error < 0.01 * weighted.mean);
     for (int i = 0; i < 2; i++) {
         double allowed = STANDARD_ERRORS * hypot(others[i].standard_error, weighted.standard_error);
-        // Where even chance allows much, nothing would be proved.
+        // If chance allowed much, nothing would be proved.
         assert_true(allowed < 0.1 * weighted.mean);
         assert_true(fabs(others[i].mean - weighted.mean) < allowed + 1e-4 * weighted.mean);
     }
@@ -105,7 +105,7 @@ static uint32_t add_picture(struct scene *scene, const uint8_t rgba[4][4])
     return id;
 }
 
-// A floor under an emitter whose texture glows in one corner most, seen by a rough metal as well.
+// A floor under an emitter whose texture glows most in one corner, seen by a rough metal as well.
 static void test_textured_emitter(void **state)
 {
     (void)state;

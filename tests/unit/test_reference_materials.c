@@ -1,4 +1,4 @@
-// Proves by closed formulas what the reference path tracer makes of mirrors, refracting bodies,
+// Proves with closed formulas how the reference path tracer renders mirrors, refracting bodies,
 // thin panes, coverage and lights with a size: all to 1 %.
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,7 +26,7 @@ static double mean_red(const struct scene *scene, const struct reference_params 
     return mean[0];
 }
 
-// A smooth metal shows an emitter where the law of reflection has it, and nothing beside it.
+// A smooth metal shows an emitter where the law of reflection puts it, and nothing beside it.
 static void test_mirror(void **state)
 {
     (void)state;
@@ -74,7 +74,7 @@ static struct scene *slab_scene(float edge, float attenuation, struct reference_
     return scene;
 }
 
-// The edge of the emitter is seen where Snell's law has it: half the view shows the emitter. An
+// The edge of the emitter appears where Snell's law puts it: half the view shows the emitter. An
 // error of 1 % of the displacement is a tenth of the view.
 static void test_refraction_by_snell(void **state)
 {
@@ -90,7 +90,7 @@ static void test_refraction_by_snell(void **state)
     double weights[3];
     for (int i = 0; i < 3; i++) {
         scene = slab_scene((float)(edge + (i - 1) * 0.01 * displacement), 1.0f, &params);
-        // Wider than the microfacets of smooth glass blur.
+        // Wider than the blur by the microfacets of smooth glass.
         params.camera.fov_y_rad = 0.004f;
         weights[i] = mean_red(scene, &params, 256, straight) / all;
         print_message("  edge %+d %% of the displacement off: %.3f of the view shows it\n", i - 1,
@@ -100,8 +100,8 @@ static void test_refraction_by_snell(void **state)
     assert_true(weights[0] < 0.5 && weights[2] > 0.5 && fabs(weights[1] - 0.5) < 0.02);
 }
 
-// What a slab lets through: Fresnel at both of its sides, tint once, Beer's law along the bent way;
-// with all reflections inside a geometric series.
+// What a slab lets through: Fresnel at both of its sides, tint once, Beer's law along the refracted
+// path, and all inner reflections as a geometric series.
 static void test_absorption_through_a_slab(void **state)
 {
     (void)state;
@@ -152,7 +152,7 @@ static void test_total_internal_reflection(void **state)
     scene_destroy(&scene);
 }
 
-// Where all is as bright, a clear body cannot be seen.
+// In uniform light a clear body cannot be seen.
 static void test_glass_vanishes_in_a_furnace(void **state)
 {
     (void)state;
@@ -164,8 +164,8 @@ static void test_glass_vanishes_in_a_furnace(void **state)
         support_add_box(scene, glass, (float[3]){-1, -1, -1}, (float[3]){1, 1, 1});
         struct reference_params params =
             support_narrow_view((float[3]){2, 1.5f, 4}, (float[3]){0.1f, 0.2f, 0});
-        // Light that would leave a rough surface only by meeting it twice is lost, as it is in the
-        // model of glTF.
+        // Light that would leave a rough surface only after a second bounce on it is lost, as in
+        // the model of glTF.
         static const double tolerances[] = {0.002, 0.01, 0.1};
         support_assert_ratio(mean_red(scene, &params, 256, REFERENCE_ALL_LAYERS), 1.0,
                              tolerances[i], "glass in a furnace");
@@ -173,7 +173,7 @@ static void test_glass_vanishes_in_a_furnace(void **state)
     }
 }
 
-// A thin pane: to the camera, and as a coloured shadow.
+// A thin pane: seen by the camera, and as a coloured shadow.
 static void test_thin_panes_tint(void **state)
 {
     (void)state;
@@ -206,8 +206,8 @@ static void test_thin_panes_tint(void **state)
     scene_destroy(&scene);
 }
 
-// A blended sheet shows its own light by its alpha, and what is behind by the rest; so does the
-// light that falls through it.
+// A blended sheet shows its own light by its alpha and what is behind by the rest; so does light
+// that passes through it.
 static void test_coverage(void **state)
 {
     (void)state;
@@ -242,8 +242,8 @@ static void test_coverage(void **state)
     scene_destroy(&scene);
 }
 
-// A light of a size gives what a point would to a surface that faces it, and half of that where an
-// edge hides half of it.
+// A light with a size gives a surface that faces it what a point light would, and half of that
+// where an edge hides half of it.
 static void test_lights_of_a_size(void **state)
 {
     (void)state;
@@ -304,8 +304,8 @@ static void test_blinn_phong(void **state)
     scene_destroy(&scene);
 }
 
-// A mirror throws a point's light onto a floor as if there were a second point behind it: light
-// that chance would hardly ever find. The more samples, the less it is blurred.
+// A mirror reflects a point light's light onto a floor as if there were a second point behind it:
+// chance would hardly ever find that path. The more samples, the less it is blurred.
 static void test_caustic_of_a_point(void **state)
 {
     (void)state;
@@ -331,8 +331,8 @@ static void test_caustic_of_a_point(void **state)
     scene_destroy(&scene);
 }
 
-// Many lights over a floor give the sum of what each gives: those of a range by way of the grid
-// that tells which reach a point, very many without one by way of candidates.
+// Many lights over a floor give the sum of what each gives: lights with a range through the grid
+// that knows which ones reach a point, very many without a range through candidates.
 static void test_many_lights_sum_up(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-// Proves the random numbers of the reference path tracer: uniform and independent from use to use
-// and from pixel to pixel, and stratified as Sobol's first two dimensions are: of 2^m points that
-// follow each other one lies in every elementary interval of area 2^-m, whatever its shape.
+// Proves the random numbers of the reference path tracer: uniform, and independent from use to use
+// and from pixel to pixel. They are stratified as Sobol's first two dimensions are: of 2^m
+// consecutive points, one lies in every elementary interval of area 2^-m, whatever its shape.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -51,8 +51,8 @@ static void test_single_numbers_are_stratified(void **state)
         assert_int_equal(hits[i], 1);
 }
 
-// Correlation of what two uses, pixels, sequences or seeds get, over many samples: none is beyond
-// what chance allows (its standard deviation is 1 / sqrt(n); five of them are allowed).
+// Correlation between two uses, pixels, sequences or seeds, over many samples: none is beyond what
+// chance allows (its standard deviation is 1 / sqrt(n); five of them are allowed).
 static void test_uses_and_pixels_are_independent(void **state)
 {
     (void)state;

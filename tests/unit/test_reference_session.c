@@ -1,6 +1,6 @@
 // Proves how a reference works rather than what it shows: the same bits whatever the threads and
 // interruptions, stopping, images per bounce that sum up, an estimate of noise that is right, and
-// snapshots that live on when the document changes.
+// snapshots that outlive changes of the document.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -128,7 +128,7 @@ static void test_stopping_keeps_the_picture(void **state)
     reference_get_picture(reference, REFERENCE_ALL_LAYERS, fixture->pictures[1]);
     assert_true(first.nearest_rays == second.nearest_rays);
     assert_true(same_pictures(fixture));
-    // And while they work, workers go when told to.
+    // Workers also stop when told to while they trace.
     reference_start(reference, REFERENCE_MAX_SAMPLES);
     reference_destroy(&reference);
     assert_null(reference);
@@ -188,7 +188,7 @@ static void test_fewer_bounces_are_a_part(void **state)
     }
 }
 
-// The noise that is told against the difference of two independent images.
+// Compares the estimated noise with the difference of two independent images.
 static void test_noise_is_estimated(void **state)
 {
     struct fixture *fixture = *state;
@@ -239,7 +239,7 @@ static void test_snapshots_outlive_edits(void **state)
     reference_destroy(&reference);
 }
 
-// Far from the origin, where floats are a centimetre apart, all is as it is near it.
+// Far from the origin, where floats are a centimetre apart, everything is as near the origin.
 static void test_far_from_the_origin(void **state)
 {
     struct fixture *fixture = *state;

@@ -1,5 +1,5 @@
-// Proves that a copy of a scene stays as it was when the scene is edited and freed, shares its
-// images, and can itself be edited. How: the atrium, which has textures, lights and many nodes.
+// Proves that a copy of a scene does not change when the scene is edited and freed, shares its
+// images, and can itself be edited. Uses the atrium, which has textures, lights and many nodes.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

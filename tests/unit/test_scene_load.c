@@ -1,5 +1,5 @@
 // Proves that scene_load() picks the importer by content and extension, names what it supports, and
-// notes the files that a scene was read from. How: small files in a temporary folder.
+// records the files that a scene was read from. Uses small files in a temporary folder.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

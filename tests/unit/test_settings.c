@@ -1,5 +1,5 @@
-// Proves that settings are compared, hashed and taken over by the table's column of what has to be
-// drawn again: sets each row to another value by the document, so that none can be forgotten.
+// Proves that settings are compared, hashed and copied by the table's column `redraw`: sets each
+// row to another value through the document, so that none can be forgotten.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
-// Proves the arithmetic of voxel boxes by counting voxels one by one: slabs that enter are disjoint
-// and are exactly what was not covered before; boxes that are added stay disjoint, cover all that
-// was added, and stay within the bounds of it.
+// Proves the arithmetic of voxel boxes by counting voxels one by one. Slabs that come in are
+// disjoint and are exactly what was not covered before. Boxes that are added stay disjoint, cover
+// all that was added, and stay within its bounds.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +11,7 @@
 
 #include "renderer/gi/regions.h"
 
-#define SPACE 20 // voxels along an edge of where boxes lie
+#define SPACE 20 // voxels along an edge of the space that holds the boxes
 #define LEVEL 8
 
 static uint64_t seed;

@@ -15,7 +15,7 @@ const figures = (name, frame_ms, flip, { preset = 'high', set = { cone_set: '16'
 });
 const presetRung = (preset, frame_ms, flip, rest = {}) => figures(preset, frame_ms, flip, { preset, set: {}, ...rest });
 
-/** A scene whose presets are the whole front, but for what is added. */
+/** A scene whose presets form the whole front, except for what is added. */
 const sceneWith = (...others) => ({
   name: 'box',
   rungs: [

@@ -1,6 +1,6 @@
-// Proves the page that ./dev accuracy writes, from made-up results whose figures are known: tables, what is on the
-// front, what noise makes unsure, what steps of settings buy, the windows that err most, the image files, and the figures
-// that are kept.
+// Proves the page that ./dev accuracy writes, from made-up results with known figures: tables, the front, figures that
+// noise makes unsure, what steps of settings buy, the windows with the largest errors, the image files, and the
+// recorded figures.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';

@@ -18,7 +18,7 @@ const MEASURE = 'run ./dev accuracy and commit docs/accuracy/figures.json';
 
 const BUILT_IN = SCENES.filter(({ source }) => source?.startsWith('builtin:')).map(({ name }) => name);
 
-/** Fails rather than skips if they are not there: then nothing holds the presets to anything. */
+/** Fails rather than skips if there are no figures: then nothing would check the presets. */
 function readFigures() {
   try {
     return JSON.parse(readFileSync(FIGURES, 'utf8'));

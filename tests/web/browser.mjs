@@ -10,7 +10,7 @@ import { PATIENCE_MS, startDaemon, stopDaemon } from './client.mjs';
 const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
 const { chromium } = require('playwright-core');
 
-// Where the release preset builds it.
+// Where the release preset puts it.
 process.env.VOXCASTD ??= fileURLToPath(new URL('../../build/release/bin/voxcastd', import.meta.url));
 
 const FLAGS = [
@@ -42,8 +42,8 @@ export async function openBrowser(viewport = { width: 1280, height: 800 }) {
 }
 
 /**
- * Opens the client and waits for its first image, by direct light and with the quickest preset: others
- * are not still for long.
+ * Opens the client and waits for its first image, with direct light and the quickest preset: other images take long to
+ * come to rest.
  */
 export async function openClient(page, daemon) {
   await page.goto(`${daemon.http}/`);
@@ -79,7 +79,7 @@ export async function openScene(scene) {
   }
 }
 
-/** Waits until this page's edits and camera are shown and the image is done and has not changed for `ms`. */
+/** Waits until this page's edits and camera are shown and the image has converged and has not changed for `ms`. */
 export async function untilStill(page, ms = 500) {
   await page.waitForFunction(
     () =>
@@ -94,7 +94,7 @@ export async function untilStill(page, ms = 500) {
   } while (last !== (await state()) || !last.endsWith('true'));
 }
 
-/** The mean colour (0 to 255) of a part of the image; the part is in shares of its size. */
+/** The mean colour (0 to 255) of a part of the image, which is given in fractions of its size. */
 export function meanColor(page, part = { x: 0, y: 0, width: 1, height: 1 }) {
   return page.evaluate((share) => {
     const picture = document.getElementById('picture');
@@ -132,7 +132,7 @@ export function difference(a, b) {
   return sum / a.length;
 }
 
-/** Types a value into the input of a parameter and settles it. */
+/** Types a value into the input of a parameter and commits it. */
 export async function setParameter(page, parameter, value) {
   const input = page.locator(`[data-parameter="${parameter}"] input[type=text], [data-parameter="${parameter}"] input[type=number]`);
   await input.first().fill(String(value));

@@ -1,6 +1,6 @@
-// Proves the accuracy tab in every state that a daemon may bring it to: Chromium opens the client of a running
-// daemon, but measuring is made up, so that figures, failures and refusals are known and come when the test
-// says so. browser_accuracy_daemon.test.mjs measures in earnest.
+// Proves the accuracy tab in every state that a daemon may bring it to. Chromium opens the client of a running daemon,
+// but the measurements are made up, so that figures, failures and refusals are known and come when the test says so.
+// browser_accuracy_daemon.test.mjs uses real measurements.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -39,7 +39,7 @@ const RUNGS = [
   rung('final', 'clipmap', 900, 0.05),
 ];
 
-/** Puts a made-up daemon's measuring into the page. `globalThis.made` steers it. */
+/** Puts a made-up daemon's measurements into the page. `globalThis.made` steers them. */
 function fakeMeasuring() {
   const { connection } = globalThis.voxcast;
   const real = connection.call.bind(connection);
@@ -194,7 +194,7 @@ describe('the tab of accuracy', () => {
     assert.match(await tip.locator('img').getAttribute('src'), /accuracy\/m3\/draft-converged\.png$/);
     await page.mouse.move(200, 300);
     assert.ok(!(await tip.isVisible()));
-    // Of all points the Tab key comes to one.
+    // The Tab key reaches one of all points.
     assert.equal(await page.locator('.error-chart .point[tabindex="0"]').count(), 1);
     await page.locator('.error-chart .point[tabindex="0"]').focus();
     await page.keyboard.press('Home');
@@ -209,7 +209,7 @@ describe('the tab of accuracy', () => {
     assert.deepEqual(await calls(), [{ method: 'view.configure', params: { rung: 'final' } }]);
     await untilText(/Drawn with final/);
     assert.equal(await point('final').getAttribute('aria-selected'), 'true');
-    // Where settings are chosen it is told that they rest.
+    // The tab of settings says that they have no effect now.
     assert.match(await page.locator('#panel-render .note').textContent(), /drawn with final/);
     assert.ok(!(await page.locator('#panel-view').innerText()).includes('Rung'));
   });

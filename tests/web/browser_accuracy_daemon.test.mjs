@@ -1,5 +1,5 @@
-// Proves that the accuracy tab and the daemon measure together: Chromium measures a small view of the Cornell box,
-// draws with what it found, lays truth and errors over the image, and cancels a second measurement.
+// Proves that the accuracy tab and the daemon work together: Chromium measures a small view of the Cornell box, draws
+// with what it found, lays reference image and errors over the image, and cancels a second measurement.
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 
@@ -13,7 +13,7 @@ describe('the tab of accuracy and the daemon', () => {
   before(async () => {
     client = await openScene('builtin:cornell');
     ({ page } = client);
-    // The stage stays as it is; only the image is small, so that the path tracer is soon done.
+    // The stage keeps its size; only the image is small, so that the path tracer finishes soon.
     await page.evaluate(async (width) => {
       const { connection, view } = globalThis.voxcast;
       const height = Math.round((width * view.size.height) / view.size.width);
@@ -65,7 +65,7 @@ describe('the tab of accuracy and the daemon', () => {
     const before = await pixels(page);
     await point('none').click();
     await untilDrawnWith('none');
-    assert.ok(difference(before, await pixels(page)) > 2); // it lacks indirect light
+    assert.ok(difference(before, await pixels(page)) > 2); // indirect light is missing
     await button('Back to own settings').click();
     await untilText(/Drawn with your own settings/);
   });

@@ -1,5 +1,5 @@
-// Proves that edits by the panel change the image, here and in another browser: two Chromiums open
-// the client of one daemon; the test adds and changes a light and a material and compares pixels.
+// Proves that edits in the panel change the image, here and in another browser: two Chromiums open the client of one
+// daemon; the test adds and changes a light and a material and compares pixels.
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 

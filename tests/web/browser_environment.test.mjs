@@ -1,5 +1,5 @@
-// Proves that the panel offers the server's environment images where there are any, loads one, and says
-// why one could not be loaded: Chromium opens the client of a daemon with a folder of small images.
+// Proves that the panel offers the server's environment images if there are any, loads one, and says why one could not
+// be loaded: Chromium opens the client of a daemon with a folder of small images.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

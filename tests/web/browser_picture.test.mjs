@@ -1,5 +1,5 @@
-// Proves that a person sees the scene and gets about in it: Chromium opens the client of a running
-// daemon, and the test looks at the canvas, uses mouse and keys, and runs axe-core on the page.
+// Proves that a person sees the scene and can move in it: Chromium opens the client of a running daemon, and the test
+// looks at the canvas, uses mouse and keys, and runs axe-core on the page.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';

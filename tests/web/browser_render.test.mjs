@@ -1,5 +1,5 @@
-// Proves that the tab of rendering shows and changes how images are made: Chromium opens the client of
-// a running daemon, a second client without a browser watches and edits the same settings.
+// Proves that the render tab shows and changes how images are made: Chromium opens the client of a running daemon; a
+// second client without a browser watches and edits the same settings.
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 

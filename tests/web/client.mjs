@@ -6,8 +6,8 @@ const require = createRequire(new URL('../../web_client/package.json', import.me
 const WebSocket = require('ws');
 
 /**
- * No test waits longer. What tests wait for takes less than a tenth of it on two slow cores without a
- * GPU, under sanitizers: it ends what hangs, and judges no speed.
+ * No test waits longer. What tests wait for takes less than a tenth of it on two slow cores without a GPU, under
+ * sanitizers. The limit ends tests that hang; it does not judge speed.
  */
 export const PATIENCE_MS = 600000;
 
@@ -73,10 +73,10 @@ export function decodeHeader(data) {
 }
 
 export class Client {
-  /** Those that are open. */
+  /** Clients that are open. */
   static #open = new Set();
 
-  /** Closes whatever a test that failed has left open. */
+  /** Closes the clients that a failed test has left open. */
   static closeAll() {
     return Promise.all([...Client.#open].map((client) => client.close()));
   }
@@ -152,7 +152,7 @@ export class Client {
     throw new Error(`nothing came in ${ms} ms: ${what}`);
   }
 
-  /** Waits until the image is done and no frame has come for `ms` since. */
+  /** Waits until the image has converged and no frame has come for `ms` since. */
   async untilStill(ms = 600) {
     let count = -1;
     while (count !== this.frames.length || !this.frames.at(-1)?.converged) {

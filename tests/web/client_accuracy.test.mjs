@@ -1,5 +1,5 @@
-// Proves what the panel's accuracy tab reckons with, without a browser: which setting a budget calls for, when
-// two cameras see the same, the colours of the error map, and the state of a measurement by what a server says.
+// Proves what the panel's accuracy tab computes, without a browser: which configuration fits a budget, when two cameras
+// see the same, the colours of the error map, and the state of a measurement from the server's messages.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -54,7 +54,7 @@ test('a pose is another one by a pixel of place, direction, roll or lens', () =>
 });
 
 test('the scale has the colours that the server paints errors with', () => {
-  // heat_map_color() of renderer/reference, at eighths.
+  // heat_map_color() of renderer/metrics/heat_map.c, at eighths.
   const painted = [[0, 0, 0], [13, 0, 22], [59, 0, 51], [116, 0, 62], [179, 0, 45], [214, 82, 0], [232, 143, 30], [229, 203, 141], [245, 245, 245]];
   painted.forEach((color, i) => {
     const difference = heatMapColor(i / 8).map((value, c) => Math.abs(value - color[c]));

@@ -1,6 +1,6 @@
-// Proves the client's maths without a browser: projection against values worked out by hand and
-// against its own inverse, rotations against known turns, node places against their inverse, the
-// camera's movements by what must stay the same, and the size of the image.
+// Proves the client's maths without a browser: projection against values worked out by hand and against its own
+// inverse, rotations against known ones, node placements against their inverse, the camera's movements by what must
+// stay constant, and the size of the image.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -47,7 +47,7 @@ test('drags along an axis and in a plane', () => {
   const along = closestOnAxis(ray, [1, 0, 0], [0, 1, 0]);
   const point = [1, along, 0];
   const reach = length(subtract(point, ray.origin));
-  // Points of the axis beside the closest one are farther from the ray.
+  // Points of the axis next to the closest one are farther from the ray.
   const distance = (p) => {
     const offset = subtract(p, ray.origin);
     const t = offset[0] * ray.direction[0] + offset[1] * ray.direction[1] + offset[2] * ray.direction[2];
@@ -68,7 +68,7 @@ test('turns by quaternions and back', () => {
   near(toEulerDegrees([0, 1, 0, 0]), [0, 180, 0], 1e-9);
   const far = fromEulerDegrees([170, 60, -160]);
   near(rotate(fromEulerDegrees(toEulerDegrees(far)), [1, 2, 3]), rotate(far, [1, 2, 3]), 1e-9);
-  // Straight along Y the three angles are not unique, but the turn is.
+  // Straight along Y the three angles are not unique, but the rotation is.
   for (const angles of [[30, 90, 0], [10, -90, 25]]) {
     const there = fromEulerDegrees(angles);
     const back = fromEulerDegrees(toEulerDegrees(there));

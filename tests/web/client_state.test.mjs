@@ -1,5 +1,5 @@
-// Proves what the client keeps in mind, without a browser: the document against edits as
-// scene.changed brings them, and the clock from edit to photon.
+// Proves the client's state without a browser: the document after edits as scene.changed brings them, and the times
+// from edit to photon.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

@@ -1,5 +1,5 @@
-// Proves the page of voxcast accuracy: Chromium opens it from a folder with made-up results, as a
-// person does after a run; the test looks at points, front, tip and table, and runs axe-core.
+// Proves the page of voxcast accuracy: Chromium opens it from a folder with made-up results, as a person does after a
+// run; the test looks at points, front, tip and table, and runs axe-core.
 import assert from 'node:assert/strict';
 import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -85,7 +85,7 @@ describe('the report of an accuracy run', () => {
     const [none, good, worse, best] = places;
     assert.ok(none[0] < good[0] && good[0] < worse[0] && worse[0] < best[0]);
     assert.ok(none[1] < worse[1] && worse[1] < good[1] && good[1] < best[1]);
-    // Ten times the time is the same step, wherever it is.
+    // Ten times the time is the same distance anywhere on the axis.
     assert.ok(Math.abs(good[0] - none[0] - (best[0] - good[0])) < 0.01);
   });
 
@@ -93,7 +93,7 @@ describe('the report of an accuracy run', () => {
     assert.deepEqual(await onFront(), ['none', 'good', 'best']);
     await page.locator('select[name=metric]').selectOption({ label: 'SSIM' });
     assert.deepEqual(await onFront(), ['none', 'good', 'worse', 'best']);
-    // Too dark and too bright are equally wrong; what errs not at all has no place on the chart.
+    // Too dark and too bright are equally wrong; an error of 0 has no position on the chart.
     await page.locator('select[name=metric]').selectOption({ label: 'energy ratio, red' });
     assert.deepEqual(await onFront(), ['none', 'good', 'worse']);
     assert.equal(await page.locator('.point').count(), 3);

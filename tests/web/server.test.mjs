@@ -1,5 +1,5 @@
-// Proves that the running daemon keeps to PROTOCOL.md: starts voxcastd on a free port with a built-in
-// scene, talks to it as browsers and hostile programs do, and looks at what comes back.
+// Proves that the running daemon keeps to PROTOCOL.md: starts voxcastd on a free port with a built-in scene, talks to
+// it as browsers and hostile programs do, and checks the replies.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server.test.mjs
 import assert from 'node:assert/strict';
 import { mkdtempSync, writeFileSync } from 'node:fs';
@@ -10,7 +10,7 @@ import { after, before, describe, test } from 'node:test';
 
 import { Client, sleep, startDaemon, stopDaemon } from './client.mjs';
 
-/** Sends raw bytes; resolves with all that comes until the server closes. */
+/** Sends raw bytes; resolves with all that comes until the server closes the connection. */
 function raw(port, ...requests) {
   return new Promise((resolve, reject) => {
     const socket = net.connect(port, '127.0.0.1');
@@ -308,7 +308,7 @@ test('wants the token', async () => {
   const viewer = await Client.open(daemon.url);
   assert.equal((await viewer.call('session.hello', { token: 'look' })).result.role, 'viewer');
   assert.equal((await viewer.call('settings.update', { set: { gamma: 1 } })).error.code, -32001);
-  // Measuring changes nothing of the document.
+  // Measuring does not change the document.
   assert.ok((await viewer.call('accuracy.start', { noise: 0.1 })).result);
   assert.deepEqual((await viewer.call('accuracy.cancel', {})).result, {});
   assert.equal(await stopDaemon(daemon), 0, daemon.log);
@@ -318,7 +318,7 @@ test('wants the token', async () => {
 test('keeps the last good texture while its file is broken', async () => {
   const folder = mkdtempSync(join(tmpdir(), 'voxcast-'));
   const path = join(folder, 'textured.obj');
-  // A TGA image of one pixel: no other format is as easily written by hand.
+  // A TGA image of one pixel: the format that is easiest to write by hand.
   const header = [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0];
   const picture = (blue) => Buffer.from([...header, blue, 20, 30]);
   writeFileSync(join(folder, 'colour.tga'), picture(10));

@@ -1,7 +1,7 @@
-// Proves that clients measure accuracy as PROTOCOL.md says: a measurement goes from the reference to
-// the last configuration, tells how far it is, leaves files that hold finite figures and nothing else, ends
-// when it is told to, and goes with its client; another client's images stay the same bits and go
-// on coming; a configuration changes its own client's images only.
+// Proves that clients measure accuracy as PROTOCOL.md says. A measurement goes from the reference to the last
+// configuration, reports its progress, leaves files that hold finite figures and nothing else, ends when it is told to,
+// and goes with its client. Another client's images stay the same bits and keep coming. A configuration changes only
+// its own client's images.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_accuracy.test.mjs
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
@@ -47,7 +47,7 @@ const inState = (...states) => ({ state }) => states.includes(state);
 
 const get = (daemon, id, file) => fetch(`${daemon.http}/accuracy/${id}/${file}`);
 
-/** The status line that answers a request whose path is sent as it is. */
+/** The status line that answers a request whose path is sent unchanged. */
 function rawStatus(port, path) {
   return new Promise((resolve, reject) => {
     const socket = net.connect(port, '127.0.0.1', () => socket.write(`GET ${path} HTTP/1.1\r\nHost: x\r\n\r\n`));
@@ -79,7 +79,7 @@ describe('accuracy', () => {
     process.env.TMPDIR = folder;
     daemon = await startDaemon(['--scene', 'builtin:cornell']);
   });
-  // A measurement that a failed test has left would make the next one wait.
+  // A measurement left by a failed test would make the next one wait.
   afterEach(() => Client.closeAll());
   after(async () => {
     assert.equal(await stopDaemon(daemon), 0);
@@ -181,7 +181,7 @@ describe('accuracy', () => {
       '/accuracy/',
       '/accuracy',
     ])
-      // What is no path at all is hung up on.
+      // A request that is no path at all closes the connection.
       assert.match(await rawStatus(daemon.port, path), /^$| 40[34] /, path);
     await client.close();
     await client.until(() => folders().length === 0, 'the folder goes with the client');
@@ -195,7 +195,7 @@ describe('accuracy', () => {
     await client.call('accuracy.cancel', {});
     await heard(client, traced.measurement, inState('cancelled'), 'the end while the reference is traced');
     assert.equal((await get(daemon, traced.measurement, 'results.json')).status, 404);
-    // A new one takes the place of an old one.
+    // A new measurement replaces the old one.
     const measured = await start(client, { noise: 0.1, ladder: 'full' });
     assert.equal(measured.rung_count, 53); // the live one and those of the sweep
     await client.until(() => folders().length === 1, 'the folder of the old one is gone');
@@ -206,15 +206,15 @@ describe('accuracy', () => {
     const results = await (await get(daemon, measured.measurement, 'results.json')).json();
     assert.equal(results.rungs.length, end.done, 'what has been measured stays');
     assert.ok(results.rungs.every(({ edit }) => !edit.error), 'no rung is there in part');
-    // Where noise does not fall in time, the reference image is what there is.
+    // Where noise does not fall in time, the reference image is used as it is.
     const hasty = await start(client, { noise: 0.0005, seconds: 1 });
     const noisy = await heard(client, hasty.measurement, inState('rungs'), 'rungs after a second');
     assert.ok(noisy.noise > 0.0005, `noise ${noisy.noise}`);
-    // Many at once are one in the end.
+    // Many requests at once leave one measurement.
     const replies = await Promise.all(Array.from({ length: 40 }, () => client.call('accuracy.start', {})));
     assert.equal(new Set(replies.map(({ result }) => result.measurement)).size, 40);
     await client.until(() => folders().length === 1, 'the folders of all but the last are gone');
-    // One that waits ends at once; one whose client leaves leaves nothing.
+    // A waiting measurement ends at once; one whose client leaves leaves nothing behind.
     const second = await arrive(daemon);
     const running = await start(client, { noise: 0.0005 });
     assert.equal((await get(daemon, measured.measurement, 'results.json')).status, 404, 'replaced');
@@ -237,11 +237,11 @@ describe('accuracy', () => {
   test('leaves others alone', async () => {
     const client = await arrive(daemon);
     const other = await arrive(daemon);
-    // All views share one grid, which other settings would set back.
+    // All views share one grid, which other settings would reset.
     await client.call('settings.update', { set: { gi_method: 'grid' } });
     const times = { alone: [], 'while the reference is traced': [], 'while rungs are measured': [] };
     let pictures = [], revision = 0;
-    /** Images at rest from three places; notes how long each first frame took to be there. */
+    /** Images at rest from three positions; records how long each first frame took. */
     const tour = async (when) => {
       const seen = [];
       for (const x of [0.1, -0.15, 0]) {
@@ -256,7 +256,7 @@ describe('accuracy', () => {
     };
     const same = (seen) => seen.every((picture, i) => pictures[i]?.equals(picture));
     const check = async (when) => assert.ok(same(await tour(when)), `${when}: the same bits as before`);
-    // Voxels gather light where somebody first looks, so that the first images are not the last.
+    // The cache converges where somebody first looks, so that the first images are not the last.
     for (let i = 0, seen = await tour(); !same(seen) && i < 10; i++, seen = await tour()) pictures = seen;
     for (let i = 0; i < 3; i++) await check('alone');
     const { measurement: id } = await start(client, { noise: 0.005, ladder: 'full' });
@@ -309,7 +309,7 @@ describe('accuracy', () => {
     assert.equal(bad.error?.data.field, 'rung');
     assert.match(bad.error.message, /no rung "best"; measured are live, none, draft/);
     assert.equal((await client.call('view.configure', {})).result.width, 64, 'nothing of it was set');
-    // Edits of shared settings come through where they are about how images are shown.
+    // Edits of shared settings take effect if they are about how images are displayed.
     await rung('draft');
     let from = client.frames.length;
     await client.call('settings.update', { set: { exposure_ev: 1 } });

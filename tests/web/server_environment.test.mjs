@@ -1,6 +1,5 @@
-// Proves that environments can be given: by --environment at the start, and by environment.load, which
-// is an edit like others. Starts voxcastd with a folder of small images that are written here and
-// compares the bytes of frames.
+// Proves that environments can be chosen: by --environment at the start, and by environment.load, which is an edit like
+// others. Starts voxcastd with a folder of small images that are written here and compares the bytes of frames.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_environment.test.mjs
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -49,7 +48,7 @@ async function greet(daemon, params = {}, query = '') {
 
 const environmentOf = async (client) => (await client.call('scene.get')).result.environment;
 
-/** The newest frame once images have come to rest, of this revision of the document or later. */
+/** The newest frame once images have converged, of this revision of the document or later. */
 async function restingFrame(client) {
   const { revision } = (await client.call('scene.get')).result;
   await client.until(() => client.frames.some((f) => f.sceneRevision >= revision && f.converged), 'a resting frame');
@@ -78,7 +77,8 @@ describe('a daemon with a folder of environments', () => {
     viewer = await greet(daemon, {}, '?token=viewer');
     for (const silent of [other, viewer]) await silent.call('view.configure', { paused: true });
     await client.call('view.configure', { width: 96, height: 64, quality: 'interactive', adaptive: false });
-    // Light in voxels settles to within a bound, not to the bit: what it was before is left of it.
+    // Light in voxels converges to within a bound, not to the bit: a trace of the former light stays. So
+    // indirect light is off here.
     const { result } = await client.call('settings.update', { set: { gi_method: 'none', exposure_mode: 'fixed' } });
     assert.ok(result);
   });

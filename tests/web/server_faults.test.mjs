@@ -1,6 +1,6 @@
-// Proves that the daemon outlives the faults of its clients and of its machine: frames and messages
-// that are cut off or no frames at all, clients that stop reading, a disk that is full, a GL
-// context that is lost. Others are served meanwhile, and the document stays what it was.
+// Proves that the daemon outlives the faults of its clients and of its machine: truncated frames and messages or no
+// frames at all, clients that stop reading, a full disk, a lost GL context. Others are served meanwhile, and the
+// document does not change.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_faults.test.mjs
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
@@ -11,10 +11,10 @@ import { after, afterEach, before, describe, test } from 'node:test';
 
 import { Client, PATIENCE_MS, sleep, startDaemon, stopDaemon } from './client.mjs';
 
-// What the daemon is told to keep for a client that does not read: as little as may be, so that it is
-// full before silence for a minute ends the client.
+// How much the daemon may keep for a client that does not read: as little as possible, so that the queue is full before
+// a minute of silence ends the client.
 const MAX_QUEUED_BYTES = 1 << 20;
-// The most that Linux lets two TCP sockets hold, and some.
+// More than Linux lets two TCP sockets hold.
 const SOCKET_BYTES = 16 << 20;
 const TEXT = 1, CONTINUATION = 0, PING = 9, FINAL = 0x80, MASKED = 0x80;
 
@@ -25,7 +25,7 @@ async function arrive(daemon, view = { width: 64, height: 36 }) {
   return client;
 }
 
-/** A frame as RFC 6455 has it; `announced` is the length that its header tells. */
+/** A frame as RFC 6455 defines it; `announced` is the length in its header. */
 function frame(text, { opcode = TEXT, final = true, masked = true, announced } = {}) {
   const data = Buffer.from(text), length = announced ?? data.length;
   const header = [opcode | (final ? FINAL : 0)];
@@ -86,7 +86,7 @@ describe('clients at fault', () => {
     assert.equal(await stopDaemon(daemon), 0);
   });
 
-  /** The good client gets an image of a camera of its own, and the document is what it was. */
+  /** The good client gets an image of a camera of its own, and the document has not changed. */
   async function checkOthers(what) {
     const number = ++revision;
     await good.call('camera.set', { eye: [number / 1000, 0.27, 1.08], target: [0, 0.27, 0], revision: number });
@@ -153,8 +153,8 @@ describe('clients at fault', () => {
     await readUntil(raw, '"parameters"');
     raw.socket.pause();
     const bytes = JSON.stringify(document).length;
-    // Answers that nobody takes: those that may wait, and what the sockets hold themselves.
-    // That it has been hung up on, it learns by reading alone: the daemon tells.
+    // Enough replies to fill the daemon's queue and the sockets. The test does not read, so it learns from the daemon's
+    // log that the connection was closed.
     const most = (MAX_QUEUED_BYTES + SOCKET_BYTES) / bytes;
     const before = daemon.log.length;
     const told = (what) => daemon.log.slice(before).includes(what);
@@ -195,7 +195,7 @@ describe('a full disk', () => {
       'the end of a measurement'));
     assert.match(error?.message ?? end.params.message ?? JSON.stringify(end.params), pattern);
     assert.notEqual(end?.params.state, 'done');
-    // All else goes on.
+    // Everything else goes on.
     const from = client.frames.length;
     await client.call('camera.set', { eye: [0.1, 0.27, 1.08], target: [0, 0.27, 0], revision: 3 });
     await client.until(() => client.frames.slice(from).find((f) => f.cameraRevision === 3), 'a frame');
@@ -204,7 +204,7 @@ describe('a full disk', () => {
 
   test('ends a measurement with a reason, and nothing else', async () => {
     const folder = mkdtempSync(join(tmpdir(), 'voxcast-test-'));
-    // Files end after 512 bytes; the signal that comes with it is not for the daemon.
+    // Files end after 512 bytes; the daemon ignores the signal that comes with that.
     const daemon = await startDaemon(['--scene', 'builtin:cornell'], {
       env: { TMPDIR: folder, MESA_SHADER_CACHE_DISABLE: 'true' },
       before: "trap '' XFSZ; ulimit -f 1",

@@ -1,5 +1,5 @@
-// Proves how the daemon behaves as a process: what it says of its version and of a port that is taken,
-// and that a signal ends it in time, whatever it is doing.
+// Proves how the daemon behaves as a process: what it reports of its version and of a port in use, and that a signal
+// ends it in time, whatever it is doing.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_process.test.mjs
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -10,7 +10,7 @@ import { after, before, describe, test } from 'node:test';
 
 import { Client, PATIENCE_MS, sleep, startDaemon, stopDaemon } from './client.mjs';
 
-// It ends within 1 s; a machine that is busy may take as long to notice.
+// It ends within 1 s; a busy machine may take as long again to notice.
 const LIMIT_MS = 5000;
 
 const run = (...args) => spawnSync(process.env.VOXCASTD, args, { encoding: 'utf8', timeout: PATIENCE_MS });
@@ -49,7 +49,7 @@ describe('a signal', () => {
     assert.ok(performance.now() - began < LIMIT_MS, `${signal} took ${Math.round(performance.now() - began)} ms`);
   }
 
-  // With no shader compiled and so many pixels the first frame takes many times the limit on a CPU.
+  // Without compiled shaders and with so many pixels the first frame takes many times the limit on a CPU.
   for (const signal of ['SIGINT', 'SIGTERM'])
     test(`${signal} ends the daemon in its first frame`, async () => {
       const env = { MESA_SHADER_CACHE_DIR: join(folder, signal) };

@@ -1,5 +1,5 @@
-// Proves that the daemon trades quality for speed as PROTOCOL.md says: starts voxcastd with a built-in
-// scene, moves a camera or keeps it still, and reads the rows and the convergence of the frames' headers.
+// Proves that the daemon trades quality for speed as PROTOCOL.md says: starts voxcastd with a built-in scene, moves a
+// camera or keeps it at rest, and reads rows and convergence from the frames' headers.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_quality.test.mjs
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -13,7 +13,7 @@ const TICKS_PER_SECOND = 100;
 async function hello(daemon, view = {}) {
   const client = await Client.open(daemon.url);
   client.hello = (await client.call('session.hello', {})).result;
-  // Direct light is done in one frame of the wanted row.
+  // Direct light converges in one frame of the wanted row.
   await client.call('settings.update', { set: { gi_method: 'none' } });
   await client.call('view.configure', { width: 160, height: 90, ...view });
   return client;
@@ -27,7 +27,7 @@ function processorSeconds({ child }) {
 
 let revision = 0;
 
-/** Moves the camera a little, `count` times, and gives the newest revision. */
+/** Moves the camera a little, `count` times, and returns the newest revision. */
 async function move(client, count, pauseMs) {
   for (let i = 0; i < count; i++) {
     revision++;
