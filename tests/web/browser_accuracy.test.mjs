@@ -183,7 +183,7 @@ describe('the tab of accuracy', () => {
     await untilText(/Waits until another measurement has ended/);
     await measured(5, { state: 'done', done: 5 });
     assert.match(await text(), /Measured 5 of 5 settings/);
-    assert.match(await text(), /The reference image itself errs by 0\.02, more than a tenth of the least error \(0\.05\)/);
+    assert.match(await text(), /reference image itself errs by 0\.02, more than a tenth of the least error \(0\.05\)/);
     await calls();
   });
 

@@ -92,7 +92,7 @@ function describeProgress(progress) {
     case 'reference': {
       const noise = progress.noise ? `noise ${percentText(progress.noise)}` : 'noise not known yet';
       const wanted = progress.noise_wanted ? ` (wanted: ${percentText(progress.noise_wanted)})` : '';
-      return `Traces the reference image: ${progress.samples ?? 0} samples a pixel, ${noise}${wanted}.${left(progress)}`;
+      return `Traces the reference: ${progress.samples ?? 0} samples a pixel, ${noise}${wanted}.${left(progress)}`;
     }
     case 'rungs':
       return `Measured ${count}${progress.rung ? `; now ${progress.rung}` : ''}.${left(progress)}`;

@@ -50,8 +50,8 @@
   function describeOwnError() {
     const noise = globalThis.results.noise[choice.part]?.[choice.metric];
     document.getElementById('noise').textContent = noise
-      ? `By this measure the reference image itself errs by ${short(noise.reference)}; the smallest error of a final picture ` +
-        `is ${short(noise.smallest)}. ${noise.enough ? 'That is little enough.' : 'That is more than a tenth: it needs more samples.'}`
+      ? `By this measure the reference image itself errs by ${short(noise.reference)}; the smallest error of a final ` +
+        `picture is ${short(noise.smallest)}. ${noise.enough ? 'That is little enough.' : 'That is more than a tenth: it needs more samples.'}`
       : 'The error of the reference image itself is not known.';
   }
 
