@@ -40,7 +40,7 @@ const STATE_WORDS = {
 
 const byId = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
 
-/** Puts the client together: who hears whom. */
+/** Connects the client's parts by their events. */
 export class App {
   constructor() {
     this.toasts = new Toasts(byId('toasts'));
@@ -112,7 +112,7 @@ export class App {
     if (result) this.selection.choose({ lightId: result.id, nodeId: result.node });
   }
 
-  /** Moves the camera to see the chosen thing, or the scene. */
+  /** Moves the camera to see the selected thing, or the scene. */
   frameSelection() {
     const { center, radius } = this.document.ball;
     const place = this.#handlePlace();
@@ -133,7 +133,7 @@ export class App {
   async #refused(/** @type {import('./net/rpc_error.js').RpcError} */ error) {
     if (!this.connection.isOpen) return; // the state in the bar says so already
     this.toasts.showError(error);
-    // What the panel showed in advance did not come true.
+    // Shows the server's values again instead of the refused ones.
     await this.#loadDocument();
   }
 
@@ -177,7 +177,7 @@ export class App {
     this.measurement.forget(); // the server measures for a connection
     this.view.begin(hello);
     this.viewTab.rebuild();
-    // The camera of an earlier connection stays, if the scene is the same.
+    // The camera of an earlier connection stays if the scene is the same.
     const known = this.lastSource;
     this.#fillLists().catch(() => {});
     if (!hello.ready) return;
@@ -187,7 +187,7 @@ export class App {
     if (hello.role === 'viewer') this.toasts.show('info', 'You may look, but not edit.');
   }
 
-  /** What the server has to show. */
+  /** The lists of what the server can load. */
   async #fillLists() {
     const { scenes, environments } = await this.connection.call('scene.list');
     this.scene.loader.fillList(scenes);
@@ -213,7 +213,7 @@ export class App {
       this.toasts.show('warn', warning);
   }
 
-  /** What was measured is of another scene. */
+  /** The measurement was of another scene. */
   #forgetMeasurement() {
     if (this.measurement.isRunning) this.measurement.cancel().catch(() => {});
     this.measurement.forget();
@@ -269,7 +269,7 @@ export class App {
     if (group !== 'animation' && group !== 'settings') this.#drawOverlay();
   }
 
-  /** Things that are chosen may have gone. */
+  /** Selected things may have gone. */
   #forgetLost() {
     const { nodeId, lightId, materialId } = this.selection;
     const isLost =
@@ -307,7 +307,9 @@ export class App {
     }, RATE_MS);
   }
 
-  /** Tells which camera the shown frame is of. One that changed nothing came without a frame, but in the statistics. */
+  /**
+   * Records which camera the shown frame is of. A camera that changed nothing came without a frame, in the statistics.
+   */
   #noteRevision() {
     const { shownHeader: shown, newestStats: stats } = this;
     if (!shown) return;

@@ -1,7 +1,6 @@
 /**
- * Knows whether the document has changed since it was measured: by revisions, so that edits which were on their
- * way when the measurement began count as what they are.
- * Event: `changed`.
+ * Knows whether the document has changed since it was measured. It compares revisions, so that edits that were on their
+ * way when the measurement began count correctly. Event: `changed`.
  */
 export class EditWatch extends EventTarget {
   /**
@@ -21,7 +20,7 @@ export class EditWatch extends EventTarget {
     });
   }
 
-  /** What people should know, in words; "" if nothing has changed. */
+  /** What people should know, as a sentence; "" if nothing has changed. */
   get words() {
     const { id, revision } = this.measurement;
     if (!id) return '';

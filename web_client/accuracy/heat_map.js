@@ -1,6 +1,6 @@
 import { srgbFromLinear } from '../math/color.js';
 
-// As renderer/metrics/heat_map.c has them: lightness grows evenly, hue turns from violet by red to yellow.
+// As in renderer/metrics/heat_map.c: lightness grows evenly, hue goes from violet through red to yellow.
 const HIGHEST_LIGHTNESS = 0.97;
 const LARGEST_CHROMA = 0.22;
 const FIRST_HUE_RAD = (290 * Math.PI) / 180;
@@ -21,7 +21,7 @@ function linearFromOklab(/** @type {number} */ lightness, /** @type {number} */ 
 
 const isShown = (/** @type {number[]} */ rgb) => rgb.every((value) => value >= 0 && value <= 1);
 
-/** The colour that an error of 0 to 1 has on heat maps: sRGB, 0 to 255. @param {number} error */
+/** The colour of an error of 0 to 1 on heat maps: sRGB, 0 to 255. @param {number} error */
 export function heatMapColor(error) {
   const lightness = HIGHEST_LIGHTNESS * error;
   const hue = FIRST_HUE_RAD + (LAST_HUE_RAD - FIRST_HUE_RAD) * error;

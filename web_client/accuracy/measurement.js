@@ -15,9 +15,9 @@
 const ENDED = ['done', 'cancelled', 'failed'];
 
 /**
- * This client's newest measurement: how far it is, and what it has found.
+ * This client's newest measurement: its progress and its results.
  *
- * Events: `changed` (progress), `results` (detail none: `results` is another), `begun` (another measurement, or
+ * Events: `changed` (progress), `results` (no detail: `results` is another object), `begun` (another measurement, or
  * none).
  */
 export class Measurement extends EventTarget {
@@ -32,7 +32,7 @@ export class Measurement extends EventTarget {
     this.baseUrl = baseUrl;
     this.getJson = getJson;
     this.id = '';
-    /** Of the document that was measured. */
+    /** Revision of the document that was measured. */
     this.revision = 0;
     /** @type {Progress | null} */
     this.progress = null;
@@ -79,7 +79,7 @@ export class Measurement extends EventTarget {
     return this.connection.call('accuracy.cancel', {});
   }
 
-  /** Nothing is measured: another scene, or the connection is another one. */
+  /** Forgets the measurement: another scene or another connection has come. */
   forget() {
     this.#begin('', 0);
     this.dispatchEvent(new Event('changed'));
@@ -107,7 +107,7 @@ export class Measurement extends EventTarget {
     this.dispatchEvent(new Event('begun'));
   }
 
-  /** Reads the results; what comes meanwhile is read afterwards, once. */
+  /** Reads the results. If more come meanwhile, reads once more afterwards. */
   async #fetch() {
     this.isOutdated = true;
     if (this.isFetching) return;

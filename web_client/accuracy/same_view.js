@@ -3,12 +3,12 @@ import { dot, length, subtract } from '../math/vector.js';
 
 /** @typedef {import('../math/projection.js').CameraPose} CameraPose */
 
-// The measured pose went through single precision; beyond that a pixel of 640 would move.
+// The measured pose went through single precision. A larger difference would move a pixel of 640.
 const MAX_SHIFT = 1e-4; // of the distance to the target
 const MAX_TURN_RAD = 2e-4;
 const MAX_ASPECT = 0.02; // sizes are rounded to whole pixels
 
-/** The cosine of the largest turn differs from 1 by its square. */
+/** The cosine of the largest rotation differs from 1 by its square. */
 const isSameDirection = (/** @type {any} */ a, /** @type {any} */ b) => 1 - dot(a, b) <= MAX_TURN_RAD ** 2 / 2 + 1e-12;
 
 /** Whether two cameras see the same. @param {CameraPose} a @param {CameraPose} b */

@@ -13,8 +13,8 @@ export function msText(ms) {
   return `${ms < 10 ? ms.toFixed(1) : ms.toFixed(0)} ms`;
 }
 
-/** Of a share: "3.1 %". @param {number} share */
+/** Of a fraction: "3.1 %". @param {number} share */
 export const percentText = (share) => `${Number((100 * share).toPrecision(2))} %`;
 
-/** What people read for a configuration. @param {string} name */
+/** The name of a configuration for people. @param {string} name */
 export const rungTitle = (name) => (name === 'live' ? 'own settings as measured' : name);

@@ -1,4 +1,4 @@
-// Places of nodes: three columns and an offset, [x axis, y axis, z axis, origin].
+// Placements of nodes: three columns and an offset, [x axis, y axis, z axis, origin].
 import { add, cross, dot, scale } from './vector.js';
 import { rotate } from './quaternion.js';
 
@@ -16,7 +16,7 @@ export const parentFromNode = (node) => [
   node.translation,
 ];
 
-/** Turns and scales a direction. @param {Affine} m @param {Vector} v @returns {Vector} */
+/** Rotates and scales a direction. @param {Affine} m @param {Vector} v @returns {Vector} */
 export const mapDirection = (m, v) =>
   add(add(scale(m[0], v[0]), scale(m[1], v[1])), scale(m[2], v[2]));
 
@@ -31,7 +31,7 @@ export const multiply = (a, b) => [
   mapPoint(a, b[3]),
 ];
 
-/** The opposite of mapDirection; null for a flat map. @param {Affine} m @param {Vector} v */
+/** The inverse of mapDirection; null for a singular map. @param {Affine} m @param {Vector} v */
 export function unmapDirection(m, v) {
   const [x, y, z] = m;
   const volume = dot(x, cross(y, z));

@@ -1,4 +1,4 @@
-// Between the world and the image. Places in the image are 0 to 1, from the top left corner.
+// Between the world and the image. Positions in the image are 0 to 1, from the top left corner.
 import { add, cross, dot, normalize, scale, subtract } from './vector.js';
 
 /** @typedef {import('./vector.js').Vector} Vector */

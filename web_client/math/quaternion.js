@@ -19,10 +19,7 @@ export function rotate(q, v) {
   ];
 }
 
-/**
- * Turns about X, then Y, then Z (fixed axes), as people type them.
- * @param {number[]} degrees @returns {number[]}
- */
+/** Rotates about X, then Y, then Z (fixed axes), as people type them. @param {number[]} degrees @returns {number[]} */
 export function fromEulerDegrees([dx, dy, dz]) {
   const [cx, cy, cz] = [dx, dy, dz].map((d) => Math.cos(d / DEGREES / 2));
   const [sx, sy, sz] = [dx, dy, dz].map((d) => Math.sin(d / DEGREES / 2));
@@ -34,10 +31,12 @@ export function fromEulerDegrees([dx, dy, dz]) {
   ];
 }
 
-/** The opposite of fromEulerDegrees: of the two ways, the smaller angles. @param {number[]} q @returns {number[]} */
+/**
+ * The inverse of fromEulerDegrees: of the two solutions, the smaller angles. @param {number[]} q @returns {number[]}
+ */
 export function toEulerDegrees([x, y, z, w]) {
   const sine = Math.max(-1, Math.min(1, 2 * (w * y - z * x)));
-  // Looking straight along Y, X and Z turn about one axis: give it all to X.
+  // Straight along Y, X and Z rotate about one axis: X takes all of the angle.
   if (Math.abs(sine) > 0.99999)
     return [2 * Math.atan2(x, w) * DEGREES, Math.sign(sine) * 90, 0];
   const ex = Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)) * DEGREES;

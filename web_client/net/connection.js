@@ -9,11 +9,11 @@ const ERROR_NOT_PERMITTED = -32001;
 /** @typedef {'connecting' | 'open' | 'waiting' | 'unauthorized'} ConnectionState */
 
 /**
- * The one place that knows sockets. Keeps a connection to the server up, says session.hello, matches
- * replies with requests, and hands on notifications and frames.
+ * The only user of sockets. Keeps a connection to the server, says session.hello, matches replies with requests, and
+ * passes on notifications and frames.
  *
- * Events: `state`, `hello` (detail: the server's description), `notification` (detail: method and
- * params), `frame` (detail: header and jpeg).
+ * Events: `state`, `hello` (detail: the server's description), `notification` (detail: method and params), `frame`
+ * (detail: header and jpeg).
  */
 export class Connection extends EventTarget {
   /** @param {string} url @param {() => {name?: string, token?: string}} getIdentity */
@@ -121,7 +121,7 @@ export class Connection extends EventTarget {
       return;
     }
     this.#enter('waiting');
-    // Clients that lost one server come back at different times.
+    // Random, so that clients of one lost server come back at different times.
     this.timer = setTimeout(() => this.connect(), this.waitMs * (0.75 + Math.random() / 2));
     this.waitMs = Math.min(this.waitMs * 1.7, LONGEST_WAIT_MS);
   }

@@ -5,7 +5,7 @@ import { errorChart } from './error_chart.js';
 
 const FIRST = 1;
 
-/** The slider of time that a frame may take: it draws with the most accurate setting that keeps it. */
+/** The slider for the time that a frame may take. It draws with the most accurate configuration that keeps it. */
 export class AccuracyBudget {
   /**
    * @param {HTMLElement} root
@@ -25,7 +25,7 @@ export class AccuracyBudget {
         this.refresh();
         options.onMove();
       },
-      // Let go of: the image follows.
+      // The slider was released: the image follows.
       onchange: () => this.pick && options.onChoose(this.pick.name),
     });
     this.marks = element('div', { class: 'budget-marks', 'aria-hidden': 'true' });
@@ -33,12 +33,12 @@ export class AccuracyBudget {
     this.text = element('p', { class: 'budget-text' });
     this.use = element('button', { type: 'button', onclick: () => options.onChoose(this.pick.name) }, 'Draw with it');
     root.append(element('div', { class: 'budget' }, this.slider, this.marks), this.text, element('div', { class: 'actions' }, this.use));
-    /** @type {any} entry of the configuration that the budget calls for */
+    /** @type {any} entry of the configuration that fits the budget */
     this.pick = null;
     this.refresh();
   }
 
-  /** Milliseconds; infinite for still images. */
+  /** Milliseconds; infinite for images at rest. */
   get budgetMs() {
     return BUDGETS[this.slider.valueAsNumber].ms;
   }

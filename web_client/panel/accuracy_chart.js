@@ -7,7 +7,7 @@ const HEIGHT_PX = 236;
 const TIP_ID = 'error-tip';
 const GAP_PX = 10;
 
-/** The chart of error against time: what each measured setting costs and gives; a click draws with it. */
+/** The chart of error against time: cost and accuracy of each measured configuration; a click draws with it. */
 export class AccuracyChart {
   /**
    * @param {HTMLElement} root
@@ -78,7 +78,7 @@ export class AccuracyChart {
     this.part = this.section.add(this.choice, 'part', named(errorChart.PARTS)).name('Of').onChange(redraw);
   }
 
-  /** What metrics there are, the results say. */
+  /** The results say which metrics there are. */
   #fillMetrics(/** @type {any} */ results) {
     const rows = results.metrics.filter((/** @type {any} */ { name }) => name !== 'not_finite');
     const known = rows.map((/** @type {any} */ { name }) => name).join();
@@ -117,7 +117,7 @@ export class AccuracyChart {
     this.#placeTip(mark);
   }
 
-  /** The final image, or the strip, which has the first one; with its place, before it is there. */
+  /** The final image, or the strip, which includes the first one. Its size is set before it has loaded. */
   #makePicture(/** @type {any} */ rung) {
     const { width, height } = this.app.measurement.results.setup.scene;
     const isCold = this.choice.state === 'cold';
@@ -142,7 +142,7 @@ export class AccuracyChart {
   }
 }
 
-/** What the reference image errs by itself, where that matters. */
+/** The reference image's own error, where that matters. */
 function describeNoise(/** @type {any} */ results, /** @type {any} */ { part, metric }) {
   const noise = results.noise?.[part]?.[metric];
   if (!noise || noise.enough) return '';

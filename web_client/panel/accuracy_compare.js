@@ -7,7 +7,7 @@ const MODES = [
   { name: 'error', title: 'Error map' },
 ];
 
-/** What lies over the image: nothing, the reference image beside it, or where a setting errs. */
+/** What is laid over the image: nothing, the reference image beside it, or the error map of a configuration. */
 export class AccuracyCompare {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
@@ -25,7 +25,7 @@ export class AccuracyCompare {
     this.refresh();
   }
 
-  /** The view as it was measured; null before anything is known of it. */
+  /** The view as it was measured; null until there are results. */
   get measuredView() {
     return this.app.measurement.results?.setup.scene ?? null;
   }
@@ -48,7 +48,7 @@ export class AccuracyCompare {
     });
   }
 
-  /** Whose errors are shown: those of the setting that draws, or of the own settings. */
+  /** Whose errors are shown: those of the configuration that draws, or of the client's own settings. */
   #errorRung() {
     const { measurement, view } = this.app;
     return measurement.rung(view.rung || 'live') ?? measurement.rungs[0] ?? null;
@@ -63,7 +63,7 @@ export class AccuracyCompare {
     return isSameAspect(this.shape, view.width / view.height) ? '' : 'shape';
   }
 
-  /** The stage may have got another shape. */
+  /** The stage may have another shape now. */
   #checkShape() {
     const { canvas } = this.app.picture;
     if (this.mode !== 'none' && this.shape !== canvas.width / canvas.height) this.refresh();

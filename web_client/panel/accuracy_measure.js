@@ -2,13 +2,13 @@ import { durationText, percentText } from '../accuracy/words.js';
 import { element } from '../ui/element.js';
 import { makeSection } from './sections.js';
 
-/** The server's range of the wanted noise, in percent. */
+/** The server's range for the wanted noise, in percent. */
 const NOISE = { least: 0.05, most: 10, step: 0.05 };
-/** What it may take, in seconds. */
+/** How long it may take, in seconds. */
 const TIMES = { '20 s': 20, '1 min': 60, '2 min': 120, '5 min': 300, '20 min': 1200, '1 h': 3600 };
 const LADDERS = { 'Quick: the presets': 'quick', 'Full: each setting': 'full' };
 
-/** The form that measures the view, and how far that is. */
+/** The form that starts a measurement of the view, and its progress. */
 export class AccuracyMeasure {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
@@ -25,7 +25,7 @@ export class AccuracyMeasure {
     this.stop = element('button', { type: 'button', onclick: () => this.#cancel() }, 'Cancel');
     this.text = element('p', { class: 'hint' });
     this.bar = element('progress', { max: 1, 'aria-label': 'Progress of the measurement' });
-    // Screen readers hear the steps, not each half second.
+    // Screen readers announce the steps, not every half second.
     this.step = element('p', { class: 'visually-hidden', role: 'status' });
     root.append(element('div', { class: 'actions' }, this.begin, this.stop), this.bar, this.text, this.step);
     for (const event of ['changed', 'begun']) app.measurement.addEventListener(event, () => this.refresh());
@@ -55,7 +55,7 @@ export class AccuracyMeasure {
     this.begin.disabled = true;
     const { ladder, noise, seconds } = this.choice;
     try {
-      // The image must not follow what is measured no longer.
+      // The image must not follow the measurement that this one replaces.
       if (this.app.view.rung) await this.app.view.chooseRung('');
       await this.app.measurement.start({ ladder, noise: Number((noise / 100).toPrecision(6)), seconds });
     } catch (error) {
@@ -69,7 +69,7 @@ export class AccuracyMeasure {
   }
 }
 
-/** Of the present step; null if that is not known. Noise falls by the root of the samples. */
+/** Of the present step; null if unknown. Noise falls with the square root of the samples. */
 function fractionDone(/** @type {any} */ progress) {
   if (progress?.state === 'rungs') return progress.rung_count ? progress.done / progress.rung_count : null;
   if (progress?.state !== 'reference' || !(progress.noise > 0)) return null;

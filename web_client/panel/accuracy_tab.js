@@ -5,7 +5,7 @@ import { AccuracyChart } from './accuracy_chart.js';
 import { AccuracyCompare } from './accuracy_compare.js';
 import { AccuracyMeasure } from './accuracy_measure.js';
 
-/** How far the image is from the reference image, what less error costs, and the choice between them. */
+/** How far the image is from the reference image, what less error costs, and the choice of a configuration. */
 export class AccuracyTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {

@@ -5,7 +5,7 @@ import { makeSection } from './sections.js';
 
 const DRAW_MS = 100;
 
-/** For each animation: play and pause, a place in time, and the properties of the table. */
+/** For each animation: play and pause, the time, and the properties of the table. */
 export class AnimationControls {
   /** @param {import('./app_context.js').AppContext} app */
   constructor(app) {
@@ -13,7 +13,7 @@ export class AnimationControls {
     this.root = element('section', { hidden: true });
     /** @type {{id: number, draw: () => void, refresh: () => void}[]} */
     this.players = [];
-    /** @type {Map<number, {timeS: number, at: number}>} when we knew the time of a playing animation */
+    /** @type {Map<number, {timeS: number, at: number}>} when the time of a playing animation was last known */
     this.known = new Map();
     setInterval(() => this.players.forEach((player) => player.draw()), DRAW_MS);
   }
@@ -34,7 +34,7 @@ export class AnimationControls {
     player?.draw();
   }
 
-  /** The server plays; between its messages the time is reckoned. */
+  /** The server plays. Between its messages the time is extrapolated. */
   #timeOf(/** @type {any} */ animation) {
     const now = performance.now();
     const known = this.known.get(animation.id) ?? { timeS: animation.time_s, at: now };

@@ -1,4 +1,4 @@
-// The one place that names the library's file; see lil_gui.js.
+// The only file that names the library's file; see lil_gui.js.
 import uPlot from '../node_modules/uplot/dist/uPlot.esm.js';
 import { element } from '../ui/element.js';
 

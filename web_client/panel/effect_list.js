@@ -1,7 +1,7 @@
 import { element } from '../ui/element.js';
 import { wordsOf } from './labels.js';
 
-/** Makes an empty list; fill it by showEffects. */
+/** Makes an empty list, which showEffects() fills. */
 export const makeEffectList = () => element('ul', { class: 'effects', 'aria-label': 'Effects' });
 
 /**

@@ -1,6 +1,6 @@
 import { element } from '../ui/element.js';
 
-/** The choice of the environment's image among those that the server has; hidden where it has none. */
+/** The choice of an environment image among those of the server; hidden if it has none. */
 export class EnvironmentLoader {
   /** @param {import('./app_context.js').AppContext} app */
   constructor(app) {
@@ -19,7 +19,7 @@ export class EnvironmentLoader {
     this.refresh();
   }
 
-  /** Chooses the image that is shown. */
+  /** Selects the image that is shown. */
   refresh() {
     const { image } = this;
     if ([...this.select.options].some((option) => option.value === image)) this.select.value = image;

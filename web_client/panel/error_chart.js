@@ -1,4 +1,4 @@
-// The chart is shared with a page that may load no modules: this is the one place that names its scripts.
+// A page that may load no modules shares the chart. This is the only file that names its scripts for modules.
 import '../report/error_chart.js';
 import '../report/chart_view.js';
 

@@ -9,7 +9,7 @@ import { makeSection } from './sections.js';
 
 /** @typedef {import('./app_context.js').AppContext} AppContext */
 
-/** Lights: the list, adding and removing, every property; the environment; the image's settings. */
+/** Lights: the list, adding and removing, every property; the environment; exposure and tone curve. */
 export class LightTab {
   /** @param {HTMLElement} root @param {AppContext} app */
   constructor(root, app) {
@@ -56,7 +56,7 @@ export class LightTab {
     this.chooseLight();
   }
 
-  /** Shows the lights and the controls of the chosen one. */
+  /** Shows the lights and the controls of the selected one. */
   chooseLight() {
     const { app } = this;
     const light = app.document.find('light', app.selection.lightId ?? undefined);

@@ -39,7 +39,7 @@ const DEGREES = 180 / Math.PI;
 
 const rounded = (/** @type {number} */ value) => Number(value.toPrecision(5));
 
-// The picker has 256 steps and cuts off what is between them.
+// The picker has 256 steps and truncates: a value just above a step stays on it.
 const pickerFromLinear = (/** @type {number} */ v) => (Math.round(255 * srgbFromLinear(v)) + 1e-3) / 255;
 
 /** How a type is shown: the value for people, and back. @type {Record<string, {show: Function, read: Function}>} */
@@ -96,7 +96,7 @@ function addControl(/** @type {any} */ gui, /** @type {Parameter} */ parameter, 
     isChanging = false;
   });
   controller.updateDisplay = () => {
-    // While a control changes it shows its own value: the way there and back would round it.
+    // While a control changes it shows its own value: converting it there and back would round it.
     if (!isChanging) shown[name] = show(target.get(name));
     showWhyRests(controller, parameter, target);
     return update();
@@ -129,12 +129,12 @@ function makeController(/** @type {any} */ gui, /** @type {Parameter} */ paramet
   return controller.step(unit === 'rad' ? 1 : step, false);
 }
 
-/** Keys that are whole numbers would come first, out of order: a space that is not seen stops that. */
+/** Keys that are whole numbers would come first, out of order. An invisible space prevents that. */
 function choiceOf(/** @type {string} */ value) {
   return /^\d+$/.test(value) ? `${value}\u00a0` : wordsOf(value);
 }
 
-/** A value that has no effect now is not to be changed, and says why. */
+/** Disables the control of a value that has no effect now, and says why. */
 function showWhyRests(/** @type {any} */ controller, /** @type {Parameter} */ parameter, /** @type {Target} */ target) {
   const { doc } = parameter;
   const why = whyRests(parameter, target);

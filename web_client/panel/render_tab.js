@@ -16,7 +16,7 @@ export const isGiSetting = ({ name, needs = [] }) =>
 /** Whether this tab shows an option of the view. @param {string} name */
 export const isRenderOption = (name) => QUALITY_OPTIONS.includes(name) || DEBUG_OPTIONS.includes(name);
 
-/** How the image is made: quality, global illumination, images of its parts, effects and why. */
+/** How the image is made: quality, global illumination, debug views, effects and their reasons. */
 export class RenderTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
@@ -61,7 +61,7 @@ export class RenderTab {
     this.offHint.hidden = !isOff;
   }
 
-  /** What is chosen here rests while a measured setting draws. */
+  /** The settings of this tab have no effect while a measured configuration draws. */
   #showRung() {
     const { rung } = this.app.view;
     this.measured.hidden = rung === '';

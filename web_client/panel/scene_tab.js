@@ -11,7 +11,7 @@ const places = (/** @type {number[]} */ vector) => vector.map((v) => v.toFixed(3
 const counted = (/** @type {number} */ count, /** @type {string} */ noun) =>
   `${count.toLocaleString('en')} ${noun}${count === 1 ? '' : 's'}`;
 
-/** The scene: which one, its nodes, what is chosen and where, its cameras and animations. */
+/** The scene: its source, its nodes, the selection and its placement, cameras and animations. */
 export class SceneTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
@@ -42,7 +42,7 @@ export class SceneTab {
     this.controls = null;
   }
 
-  /** The scene is another one, or nodes came or went. */
+  /** The scene is another one, or nodes were added or removed. */
   rebuild() {
     const { data } = this.app.document;
     const { nodes, lights, materials } = data;
@@ -59,7 +59,7 @@ export class SceneTab {
     this.chooseNode();
   }
 
-  /** Shows what is chosen. */
+  /** Shows the selection. */
   chooseNode() {
     const { app } = this;
     const { nodeId, hit } = app.selection;

@@ -77,13 +77,13 @@ export class StatsTab {
     this.photonChart.add(ms);
   }
 
-  /** Frames shown in each second, of late. */
+  /** Frames shown per second over the last seconds. */
   get framesPerSecond() {
     return this.arrivals.length / (RATE_WINDOW_MS / 1000);
   }
 
   #ping() {
-    // Any small request will do: its reply gives the round trip.
+    // Any small request will do: its reply measures the round trip.
     if (!this.root.hidden && !document.hidden)
       this.app.connection.call('pick', { x: 0, y: 0 }).catch(() => {});
   }

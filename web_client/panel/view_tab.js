@@ -17,7 +17,9 @@ const KEYS = [
   ['Ctrl Z, Ctrl Y', 'undo, redo'],
 ];
 
-/** The stage decides the size, the tab of accuracy the measured setting; quality is in the tab of rendering. */
+/**
+ * Controls of other tabs: the stage decides the size, the accuracy tab the configuration, the render tab the quality.
+ */
 const ELSEWHERE = ['width', 'height', 'rung'];
 
 /** How this client looks: image size, pause, its camera, and the keys. */

@@ -1,12 +1,12 @@
-// Draws the shapes of error_chart.js into an SVG element and makes its points reachable by mouse, touch and
-// keyboard. A plain script, as error_chart.js is; panel/error_chart.js names it for modules.
+// Draws the shapes of error_chart.js into an SVG element and makes its points reachable by mouse, touch and keyboard. A
+// plain script, as error_chart.js is; panel/error_chart.js names it for modules.
 
 globalThis.ErrorChartView = class {
   #svg;
   #options;
   /** @type {{ mark: SVGElement, point: any }[]} from fast to slow */
   #marks = [];
-  /** Name of the configuration whose mark the Tab key comes to. */
+  /** Name of the configuration whose mark the Tab key reaches. */
   #current = '';
 
   /**

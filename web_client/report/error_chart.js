@@ -1,8 +1,8 @@
-// Charts of error against time, for the page of an accuracy run, for the panel and for pages that node
-// writes: what a setting's time and error are, which settings no other beats, and the marks that show it.
+// Charts of error against time, for the page of an accuracy run, for the panel and for pages that node writes: time and
+// error of a configuration, the Pareto front, and the shapes that show them.
 //
-// The page is opened from the disk, where it may load no modules: so this is a plain script that leaves all
-// in globalThis.errorChart. panel/error_chart.js names it for modules.
+// The page is opened from the disk, where it may load no modules. So this is a plain script that leaves everything in
+// globalThis.errorChart. panel/error_chart.js names it for modules.
 
 /** @typedef {{ name: string, title: string, unit: string }} Metric */
 /** @typedef {{ metric: string, time: string, state: string, part: string }} Choice what is drawn */
@@ -14,11 +14,11 @@ globalThis.errorChart = (() => {
   const COLORS = { none: '#8a8f99', clipmap: '#d9622b', grid: '#2b7fd9' };
   const OTHER_COLOR = '#3a9a5b';
   const MARK_RADIUS = 7;
-  const LETTER_WIDTH = 6; // of a name, about
+  const LETTER_WIDTH = 6; // width of a letter, roughly
   const LETTER_HEIGHT = 11;
   const TICK_STEPS = [[1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9], [1, 2, 3, 5], [1, 2, 5], [1, 3], [1]];
 
-  /** What times a setting has; `short` for narrow charts. */
+  /** The times of a configuration; `short` is for narrow charts. */
   const TIMES = {
     frame: { title: 'median frame of a moving camera, ms', short: 'frame, ms', get: (rung) => rung.frame_ms.median },
     cold: { title: 'first picture of a scene just loaded, ms', short: 'first picture, ms', get: (rung) => rung.cold.ms },
@@ -39,7 +39,7 @@ globalThis.errorChart = (() => {
 
   const colorOf = (method) => COLORS[method] ?? OTHER_COLOR;
 
-  /** What a metric errs by: 0 is perfect; null without a value. As image_metric_error() has it. */
+  /** The error that a metric's value stands for: 0 is perfect; null without a value. As in image_metric_error(). */
   function errorOf(metric, value) {
     if (typeof value !== 'number') return null;
     if (metric.startsWith('energy_')) return Math.abs(value - 1);
@@ -73,7 +73,7 @@ globalThis.errorChart = (() => {
       .filter(({ ms, error }) => ms > 0 && error > 0);
   }
 
-  /** Points than which none is both faster and less wrong, from fast to slow. */
+  /** The points for which no other is both faster and less wrong, from fast to slow. */
   function frontOf(points) {
     const front = [];
     for (const point of [...points].sort((a, b) => a.ms - b.ms || a.error - b.error))
@@ -88,7 +88,7 @@ globalThis.errorChart = (() => {
     return [`preset ${settings.preset}`, ...scale, ...sets].join(', ');
   }
 
-  /** The densest ticks between two powers of ten that leave room for their texts. */
+  /** The densest ticks between two powers of ten whose labels have room. */
   function ticksOf(low, high, scale, room) {
     for (const steps of TICK_STEPS) {
       const ticks = [];
@@ -133,7 +133,7 @@ globalThis.errorChart = (() => {
     return shapes;
   }
 
-  /** A dotted line with words: what the reference image errs by itself, or a limit of time. */
+  /** A dotted line with a label: the reference image's own error, or a limit of time. */
   function limitShapes({ x, y, area }, noise, budgetMs) {
     const { left, right, top, bottom } = area;
     const shapes = [];
@@ -151,7 +151,7 @@ globalThis.errorChart = (() => {
 
   const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
-  /** Where a name may stand beside a mark: the best place first. */
+  /** Where a name may stand beside a mark: the best position first. */
   function labelPlaces(text, cx, cy, area) {
     const width = LETTER_WIDTH * text.length;
     const isLeftFirst = cx > area.left + 0.6 * (area.right - area.left);
@@ -165,7 +165,7 @@ globalThis.errorChart = (() => {
     );
   }
 
-  /** Names of points, those that must be shown first, where they cover no other name and no mark. */
+  /** Names of points, the required ones first, where they cover no other name and no mark. */
   function labelShapes(labelled, all, { x, y, area }) {
     const taken = all.map(({ ms, error }) => {
       const [cx, cy] = [x.scale(ms), y.scale(error)];
@@ -197,7 +197,7 @@ globalThis.errorChart = (() => {
     return { tag: 'circle', attributes, point };
   }
 
-  /** Marks the configuration that is live, or the one that is chosen. */
+  /** Marks the live configuration, or the selected one. */
   const ringShape = (point, { x, y }, name) => ({
     tag: 'circle',
     attributes: { class: `ring ${name}`, cx: x.scale(point.ms), cy: y.scale(point.error), r: MARK_RADIUS + 4 },
@@ -234,7 +234,7 @@ globalThis.errorChart = (() => {
     const shapes = [...axisShapes(frame), ...limitShapes(frame, noise, choice.time === 'frame' ? budgetMs : 0)];
     shapes.push({ tag: 'path', attributes: { class: 'front', d: corners.join('') } });
     const ringOf = ({ rung: { name } }) => (name === chosen ? 'chosen' : name === live ? 'live' : '');
-    // What is marked lies above the rest.
+    // Marked points are drawn on top of the rest.
     const ordered = [...points].sort((a, b) => Number(ringOf(a) !== '') - Number(ringOf(b) !== ''));
     for (const point of ordered)
       shapes.push(pointShape(point, frame, { isLarge: front.includes(point), isLive: point.rung.name === live }));

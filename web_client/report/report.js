@@ -1,5 +1,5 @@
-// The page of an accuracy run: a chart of error against time, a table, and images, of what results.js
-// has left in globalThis.results. Opened from the disk, so it is no module and loads nothing.
+// The page of an accuracy run: a chart of error against time, a table, and images, from what results.js has left in
+// globalThis.results. Opened from the disk, so it is no module and loads nothing.
 
 (() => {
   const { setup, metrics, rungs } = globalThis.results;
@@ -46,7 +46,7 @@
     },
   });
 
-  /** The reference image's own error by the metric chosen, in words. */
+  /** The reference image's own error by the chosen metric, as a sentence. */
   function describeOwnError() {
     const noise = globalThis.results.noise[choice.part]?.[choice.metric];
     document.getElementById('noise').textContent = noise

@@ -1,8 +1,8 @@
 const KEEP = 256;
 
 /**
- * Measures edit to photon: from the moment of an edit to the presentation of the first frame that
- * shows it, by the edit ids in the frames' headers.
+ * Measures edit to photon: from the moment of an edit to the presentation of the first frame that shows it, by the edit
+ * ids in the frames' headers.
  */
 export class EditTimer {
   constructor() {
@@ -41,7 +41,7 @@ export class EditTimer {
     return longest;
   }
 
-  /** The connection is new: nothing sent before will be shown. */
+  /** The connection is new: frames will not show earlier edits. */
   reset() {
     this.waiting.clear();
   }

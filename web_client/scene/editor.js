@@ -28,7 +28,7 @@ export class Editor {
     /** @type {Map<string, number>} newest edit of each field that has no reply yet */
     this.underWay = new Map();
     this.isThrottled = false;
-    // A field is stale in a broadcast while a newer edit of it is on its way.
+    // A field in a broadcast is stale while a newer edit of it is on its way.
     this.isStale = (
       /** @type {string} */ group,
       /** @type {number | undefined} */ id,
@@ -44,7 +44,7 @@ export class Editor {
   update(group, id, set, transient) {
     const key = `${group}/${id}`;
     const waiting = this.pending.get(key);
-    // An edit that settles what is there already changes no image: it is not timed.
+    // A final edit that sets what is there already changes no image: it is not timed.
     const now = this.#isNews(group, id, set) ? performance.now() : null;
     this.document.assign(group, id, set);
     const at = waiting?.at ?? now;
@@ -81,7 +81,7 @@ export class Editor {
     return this.#request('edit.redo', {});
   }
 
-  /** Forgets what the last connection was owed. */
+  /** Forgets the replies that the last connection owed. */
   reset() {
     this.pending.clear();
     this.underWay.clear();
@@ -138,7 +138,7 @@ export class Editor {
     try {
       const result = await this.connection.call(method, { ...params, edit_id: editId });
       if ('superseded_by' in result || result.method === null) this.timer.drop(editId);
-      // Not every edit is seen: a name, or a light that is off.
+      // Not every edit can be seen: a name, or a light that is off.
       else setTimeout(() => this.timer.drop(editId), LONGEST_PHOTON_MS);
       return result;
     } catch (error) {

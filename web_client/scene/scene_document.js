@@ -2,7 +2,7 @@ import { IDENTITY, multiply, parentFromNode } from '../math/affine.js';
 
 /** @typedef {import('../math/vector.js').Vector} Vector */
 
-/** Arrays of the document, by the group of the parameters that edit their items. */
+/** Arrays of the document, by the parameter group of their items. */
 const ARRAYS = /** @type {Record<string, string>} */ ({
   light: 'lights',
   material: 'materials',
@@ -13,8 +13,8 @@ const ARRAYS = /** @type {Record<string, string>} */ ({
 /**
  * The client's copy of the shared document.
  *
- * Events: `loaded` (another scene, or all of it anew), `structure` (lights or nodes came or went),
- * `changed` (detail: group and id of what has new values).
+ * Events: `loaded` (another scene, or all of it anew), `structure` (lights or nodes were added or removed), `changed`
+ * (detail: group and id of what has new values).
  */
 export class SceneDocument extends EventTarget {
   constructor() {

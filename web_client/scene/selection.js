@@ -1,9 +1,6 @@
 /** @typedef {import('../math/vector.js').Vector} Vector */
 
-/**
- * What is chosen: a node, and with it its light or a material.
- * Event: `changed`.
- */
+/** The selection: a node, and with it its light or a material. Event: `changed`. */
 export class Selection extends EventTarget {
   constructor() {
     super();
@@ -13,7 +10,7 @@ export class Selection extends EventTarget {
     this.lightId = null;
     /** @type {number | null} */
     this.materialId = null;
-    /** @type {any} the answer of `pick` that chose it */
+    /** @type {any} the reply of `pick` that selected it */
     this.hit = null;
     /** @type {Vector | null} where the handle is, in the node's own space; null: its origin */
     this.anchorNode = null;

@@ -1,4 +1,4 @@
-/** A plain sky: what the button gives. */
+/** A plain sky: what the button adds. */
 const SKY = {
   type: 'gradient',
   intensity: 1,
@@ -7,7 +7,7 @@ const SKY = {
   ground_color: [0.2, 0.18, 0.16],
 };
 
-/** Many files come without light: says so over the black image, and offers some. */
+/** Many files come without light: says so over the black image, and offers lights. */
 export class DarkHint {
   /** @param {HTMLElement} root @param {import('../panel/app_context.js').AppContext} app */
   constructor(root, app) {

@@ -1,12 +1,12 @@
 import { element } from './element.js';
 
-/** Samples and noise of a reference's image, as in "64 samples, noise 3.1 %". */
+/** Samples and noise of a reference image, as in "64 samples, noise 3.1 %". */
 function describeReference(/** @type {number} */ samples, /** @type {number} */ noise) {
   const count = `${samples} sample${samples === 1 ? '' : 's'}`;
   return noise > 0 ? `${count}, noise ${(100 * noise).toPrecision(2)} %` : count;
 }
 
-/** Over the image: what it was drawn with, and how far it has come. */
+/** Over the image: the quality it was drawn with, and its convergence. */
 export class PictureBadge {
   /** @param {HTMLElement} root */
   constructor(root) {

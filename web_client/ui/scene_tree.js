@@ -11,8 +11,8 @@ const kindOf = (/** @type {Node} */ node) =>
   node.light !== null ? 'light' : node.camera !== null ? 'camera' : node.mesh !== null ? 'mesh' : 'group';
 
 /**
- * The nodes as an ARIA tree. Only the rows in sight are in the page, so that thousands of nodes cost
- * little. The focus stays on the tree; arrow keys move the choice, V shows and hides.
+ * The nodes as an ARIA tree. Only visible rows are in the page, so that thousands of nodes cost little. The focus stays
+ * on the tree; arrow keys move the selection, V shows and hides.
  */
 export class SceneTree {
   /**

@@ -3,7 +3,7 @@ import { element } from './element.js';
 const SHOWN_MS = 7000;
 const MAX_TOASTS = 4;
 
-/** Short messages that go by themselves. Screen readers hear them. */
+/** Short messages that disappear by themselves. Screen readers announce them. */
 export class Toasts {
   /** @param {HTMLElement} container with role status or log */
   constructor(container) {

@@ -1,6 +1,6 @@
 const STORAGE_KEY = 'voxcast-token';
 
-/** Knows the token: from the address (?token=), from this tab's storage, or by asking. */
+/** Finds the token: in the address (?token=), in this tab's storage, or by asking. */
 export class TokenDialog {
   /** @param {HTMLDialogElement} dialog @param {() => void} onToken */
   constructor(dialog, onToken) {
@@ -15,7 +15,7 @@ export class TokenDialog {
     const given = url.searchParams.get('token');
     if (given === null) return;
     this.#keep(given);
-    url.searchParams.delete('token'); // secrets do not stay in the history
+    url.searchParams.delete('token'); // secrets must not stay in the history
     history.replaceState(null, '', url);
   }
 

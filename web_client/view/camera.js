@@ -6,10 +6,7 @@ import { cameraAxes } from '../math/projection.js';
 const STEEPEST_RAD = (89.5 / 180) * Math.PI;
 const WORLD_UP = /** @type {Vector} */ ([0, 1, 0]);
 
-/**
- * The client's camera: where it is, and how hands move it. Turning it levels it: up becomes +Y.
- * Event: `changed`.
- */
+/** The client's camera: its pose, and how input moves it. Rotating it levels it: up becomes +Y. Event: `changed`. */
 export class Camera extends EventTarget {
   constructor() {
     super();
@@ -27,14 +24,14 @@ export class Camera extends EventTarget {
     return length(subtract(this.pose.target, this.pose.eye));
   }
 
-  /** Turns about the target. @param {number} yawRad @param {number} pitchRad */
+  /** Rotates about the target. @param {number} yawRad @param {number} pitchRad */
   orbit(yawRad, pitchRad) {
     const direction = this.#turned(yawRad, pitchRad);
     const eye = subtract(this.pose.target, scale(direction, this.distance));
     this.set({ eye, up: WORLD_UP });
   }
 
-  /** Turns about the eye. @param {number} yawRad @param {number} pitchRad */
+  /** Rotates about the eye. @param {number} yawRad @param {number} pitchRad */
   look(yawRad, pitchRad) {
     const direction = this.#turned(yawRad, pitchRad);
     const target = add(this.pose.eye, scale(direction, this.distance));
@@ -64,7 +61,7 @@ export class Camera extends EventTarget {
     this.#shift(add(add(scale(right, x), scale(WORLD_UP, y)), scale(forward, z)));
   }
 
-  /** Looks at a ball from the same side, so that it fills the image. */
+  /** Looks at a sphere from the same side, so that it fills the image. */
   frame(/** @type {Vector} */ center, /** @type {number} */ radius, /** @type {number} */ aspect) {
     const halfY = this.pose.fov_y_rad / 2;
     const half = Math.min(halfY, Math.atan(Math.tan(halfY) * aspect));

@@ -93,7 +93,7 @@ export class CameraInput {
     const before = Math.hypot(last.x - other.x, last.y - other.y);
     const after = Math.hypot(now.x - other.x, now.y - other.y);
     if (before > 1 && after > 1) this.camera.dolly(before / after);
-    // Each finger moves the middle by half.
+    // Each of two fingers moves the midpoint by half.
     const height = 2 * this.stage.clientHeight;
     this.camera.pan((now.x - last.x) / height, (now.y - last.y) / height);
   }

@@ -1,8 +1,8 @@
 const KEEP = 512;
 
 /**
- * Tells the server where the camera is, at most once per animation frame, and remembers the poses,
- * so that what is drawn over an image can use the camera that took it.
+ * Sends the camera to the server, at most once per animation frame, and remembers the poses, so that what is drawn over
+ * an image can use the camera that the image was drawn with.
  */
 export class CameraSender {
   /**
@@ -51,7 +51,7 @@ export class CameraSender {
     const revision = ++this.revision;
     this.poses.set(revision, pose);
     if (this.poses.size > KEEP) this.poses.delete(this.poses.keys().next().value ?? 0);
-    // A lost or refused pose is made good by the next one.
+    // The next pose makes up for a lost or refused one.
     this.connection.call('camera.set', { ...pose, revision }).catch(() => {});
   }
 }

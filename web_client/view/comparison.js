@@ -19,8 +19,8 @@ const OBSTACLES = {
  */
 
 /**
- * Lies over the image: the reference image to the right of a line that can be moved, or a map of errors with its scale.
- * Where they do not fit it says so. Event: `return`, to go back to the measured view.
+ * Lies over the image: the reference image to the right of a movable line, or an error map with its scale. Where they
+ * do not fit it says so. Event: `return`, to go back to the measured view.
  */
 export class Comparison extends EventTarget {
   /**
@@ -31,7 +31,7 @@ export class Comparison extends EventTarget {
     super();
     this.pictures = pictures;
     this.controls = controls;
-    /** Of the image that is live. */
+    /** Fraction of the image that is live, from the left. */
     this.share = 0.5;
     this.truth = element('img', { alt: 'The reference image', draggable: 'false' });
     this.error = element('img', { alt: '', draggable: 'false' });
@@ -54,7 +54,7 @@ export class Comparison extends EventTarget {
     this.obstacle.hidden = fits;
     this.goBack.hidden = obstacle !== 'camera';
     this.hint.textContent = obstacle ? OBSTACLES[obstacle] : '';
-    // Images are loaded when they are wanted.
+    // Images are loaded when they are first shown.
     if (mode === 'split') setSource(this.truth, truthUrl);
     if (mode === 'error') {
       setSource(this.error, errorUrl);
@@ -115,7 +115,7 @@ function setSource(/** @type {HTMLImageElement} */ picture, /** @type {string} *
   if (url && picture.src !== url) picture.src = url;
 }
 
-/** The scale of the map of errors. */
+/** The scale of the error map. */
 function makeLegend() {
   const scale = element('span', { class: 'scale', style: `background:${heatMapGradient()}` });
   const ends = element('span', { class: 'ends' }, ...['0', '0.5', '1'].map((text) => element('span', {}, text)));

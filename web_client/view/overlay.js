@@ -21,12 +21,10 @@ function element(tag, attributes) {
 }
 
 /**
- * Draws over the image: an icon for each light and, at the chosen thing, a handle with three axes
- * and a square that moves in the plane of the screen. All of it follows the camera of the shown
- * image.
+ * Draws over the image: an icon for each light and, at the selected thing, a handle with three axes and a square that
+ * moves in the plane of the screen. Everything follows the camera of the shown image.
  *
- * Events: `light` (detail: id of a clicked light), `drag` (detail: the handle's new world position,
- * and `isLast`).
+ * Events: `light` (detail: id of a clicked light), `drag` (detail: the handle's new world position, and `isLast`).
  */
 export class Overlay extends EventTarget {
   /** @param {SVGSVGElement} svg */
@@ -37,7 +35,7 @@ export class Overlay extends EventTarget {
     this.handleLayer = svg.appendChild(element('g', {}));
     /** @type {CameraPose | null} */
     this.pose = null;
-    /** Of the shown image, which is stretched a little to fill the stage. */
+    /** Aspect of the shown image, which is stretched slightly to fill the stage. */
     this.aspect = 16 / 9;
     /** @type {{id: number, name: string, type: string, enabled: boolean, color: number[], position: Vector}[]} */
     this.lights = [];
@@ -52,7 +50,7 @@ export class Overlay extends EventTarget {
     this.handleParts = this.#makeHandle();
   }
 
-  /** Places everything anew. Cheap: a few attributes for each light. */
+  /** Positions everything anew. Cheap: a few attributes for each light. */
   draw() {
     if (!this.pose) return;
     this.#drawLights();
@@ -134,7 +132,7 @@ export class Overlay extends EventTarget {
   #drawHandle() {
     const origin = this.handle && this.#place(this.handle);
     this.handleLayer.style.display = origin ? '' : 'none';
-    // A light's icon is its own middle.
+    // At a light, its icon is the centre of the handle.
     this.handleLayer.classList.toggle('at-light', this.chosenLight !== null);
     if (!origin || !this.pose || !this.handle) return;
     // Metres at that depth that make HANDLE_PX on the screen.
@@ -142,12 +140,12 @@ export class Overlay extends EventTarget {
       (2 * Math.tan(this.pose.fov_y_rad / 2) * origin.depth * HANDLE_PX) / this.svg.clientHeight;
     for (const { direction, group, hit, line, tip } of this.handleParts.axes) {
       const end = this.#place(add(this.handle, scale(direction, metres)));
-      // An axis that points at the eye cannot be dragged along.
+      // An axis that points at the eye cannot be dragged.
       const long = end ? Math.hypot(end.x - origin.x, end.y - origin.y) : 0;
       const isShort = long < 2 * MIDDLE_PX;
       /** @type {SVGElement} */ (group).style.display = isShort ? 'none' : '';
       if (!end || isShort) continue;
-      // The middle belongs to the square, or to the light's icon.
+      // The centre belongs to the square, or to the light's icon.
       const begin = MIDDLE_PX / long;
       for (const part of [hit, line]) {
         part.setAttribute('x1', String(origin.x + (end.x - origin.x) * begin));
@@ -168,7 +166,7 @@ export class Overlay extends EventTarget {
     return rayThrough(/** @type {CameraPose} */ (this.pose), this.aspect, x, y);
   }
 
-  /** The dragged place: along the axis, or in the plane that faces the eye. */
+  /** The dragged position: along the axis, or in the plane that faces the eye. */
   #grab(/** @type {PointerEvent} */ event, /** @type {Vector | null} */ axis, /** @type {Vector} */ from) {
     const ray = this.#rayOf(event);
     if (axis) return closestOnAxis(ray, from, axis);

@@ -3,9 +3,9 @@ import { chooseViewSize } from './view_size.js';
 const SETTLE_MS = 150;
 
 /**
- * This client's view: its size follows the stage, its options follow the panel, and it pauses while
- * the page is hidden. It may be drawn with a measured setting instead of the shared ones.
- * Events: `changed`, when options are other than before, and `rung`, when the measured setting is.
+ * This client's view: its size follows the stage, its options follow the panel, and it pauses while the page is hidden.
+ * A measured configuration may draw it instead of the shared settings. Events: `changed`, when options have changed,
+ * and `rung`, when the configuration has.
  */
 export class ViewControls extends EventTarget {
   /**
@@ -23,7 +23,7 @@ export class ViewControls extends EventTarget {
     this.mode = 'orbit';
     /** @type {Record<string, any>} chosen options of group view */
     this.options = {};
-    /** Name of the measured setting that draws this view; "": the shared settings do. */
+    /** Name of the measured configuration that draws this view; "": the shared settings do. */
     this.rung = '';
     this.server = { isSoftware: false, maxWidth: 4096, maxHeight: 2160 };
     /** @type {number | undefined} */
@@ -35,21 +35,21 @@ export class ViewControls extends EventTarget {
     document.addEventListener('visibilitychange', () => this.send());
   }
 
-  /** A new connection: takes over what the server says of itself and keeps earlier choices. */
+  /** A new connection: takes over the server's description and keeps earlier choices. */
   begin(/** @type {any} */ hello) {
     this.server = {
       isSoftware: hello.gl.software,
       maxWidth: hello.limits.width,
       maxHeight: hello.limits.height,
     };
-    // Settings are measured for a connection: none is chosen at its begin, and sizes do not change the choice.
+    // Measurements belong to a connection: at its start no configuration is chosen, and sizes do not change the choice.
     const { width: _width, height: _height, rung: _rung, ...options } = hello.view;
     this.options = { ...options, ...this.options };
     this.#setRung('');
     this.send();
   }
 
-  /** Draws this view with a setting of this client's newest measurement. @param {string} rung its name, or "" */
+  /** Draws this view with a configuration of this client's newest measurement. @param {string} rung its name, or "" */
   async chooseRung(rung) {
     await this.connection.call('view.configure', { rung });
     this.#setRung(rung);
