@@ -1,4 +1,4 @@
-// Options of the offline tool's commands: each is declared with the place its value goes to, and
+// Options of the offline tool's commands: each is declared with the target of its value, and
 // cli_parse() reads the command line into these places.
 //
 //     struct cli_parser parser = {.command = "bench", .usage = usage, .max_arguments = 1};

@@ -1,5 +1,5 @@
 // Proves that voxel global illumination neither adds nor loses light: in a closed box whose walls
-// reflect a share a of light and emit L each, everything shows L / (1 - a), after n reflections
+// reflect a fraction a of light and emit L each, everything shows L / (1 - a), after n reflections
 // L (1 + a + ... + a^n); and the flux of a light in the box equals what its walls absorb.
 //
 // Runs a selection of resolutions, steps and gather modes; VOXCAST_TEST_FULL=1 runs all of them.

@@ -242,7 +242,7 @@ static void test_indirect_light_alone_is_the_difference(void **state)
     gi_report_finish(&report);
 }
 
-// The image is grey, and the statistics tell why.
+// The image is grey, and the statistics say why.
 static void test_blank_views_say_why(void **state)
 {
     (void)state;

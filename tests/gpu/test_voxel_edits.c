@@ -18,7 +18,7 @@ struct edited {
     struct frame_params params;
 };
 
-// Draws one frame; tells whether it voxelized.
+// Draws one frame; returns whether it voxelized.
 static bool voxelizes(struct edited *edited)
 {
     struct error error = {""};

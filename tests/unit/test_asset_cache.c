@@ -81,7 +81,7 @@ static void test_changed_file_or_other_index_misses(void **state)
     assert_false(is_held(&larger));
     assert_false(is_held(&other));
     assert_true(is_held(&key));
-    put_new(&newer); // takes the old one's place
+    put_new(&newer); // replaces the old one
     assert_false(is_held(&key));
     assert_int_equal(asset_cache_get_statistics().entries, 1);
     assert_int_equal(asset_cache_get_statistics().bytes, IMAGE_BYTES);

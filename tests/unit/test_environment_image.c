@@ -25,7 +25,7 @@ static void fill_texels(float *texels)
 {
     for (int i = 0; i < WIDTH * HEIGHT * 4; i++)
         texels[i] = (float)i * 0.25f;
-    texels[0] = 0x1p-24f; // the least half
+    texels[0] = 0x1p-24f; // the smallest half
     texels[4] = 65504.0f; // the largest
 }
 

@@ -19,7 +19,7 @@
 
 static const float NO_ROTATION[4] = {0, 0, 0, 1};
 
-// A quad from (-1, -1) to (1, 1) in the plane z = 0, facing +Z, placed by node 0.
+// A quad from (-1, -1) to (1, 1) in the plane z = 0, facing +Z, transformed by node 0.
 static struct scene *make_quad(const struct scene_material *material)
 {
     struct scene *scene = scene_create("quad");

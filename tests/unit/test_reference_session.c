@@ -194,7 +194,7 @@ static void test_noise_is_estimated(void **state)
     struct fixture *fixture = *state;
     struct reference_params params = fixture->params;
     params.bounce_pictures = 1;
-    params.max_bounces = 0; // no caustics, whose noise no estimate tells at few samples
+    params.max_bounces = 0; // no caustics, whose noise few samples cannot estimate
     double told = 0.0, squared = 0.0, mean = 0.0;
     for (int i = 0; i < 2; i++) {
         params.seed = 50 + (uint64_t)i;

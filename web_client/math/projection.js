@@ -32,7 +32,7 @@ export function projectPoint(camera, aspect, point) {
 }
 
 /**
- * The ray from the eye through a place of the image.
+ * The ray from the eye through a position of the image.
  * @param {CameraPose} camera @param {number} aspect @param {number} x @param {number} y
  * @returns {Ray}
  */

@@ -31,7 +31,7 @@ export class CameraInput {
    * @param {HTMLElement} stage
    * @param {import('./camera.js').Camera} camera
    * @param {{getMode: () => 'orbit' | 'fly', getSpeed: () => number,
-   *   onClick: (x: number, y: number) => void}} options speed in metres a second; a click's place is
+   *   onClick: (x: number, y: number) => void}} options speed in metres a second; a click's position is
    *   in pixels of the stage
    */
   constructor(stage, camera, options) {
