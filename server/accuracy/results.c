@@ -83,7 +83,6 @@ static double smallest_error(const cJSON *configurations, const char *part,
     return smallest;
 }
 
-// Says for each metric whether the reference image is noisier than a tenth of the smallest error:
 // Says for each metric whether the reference image is accurate enough: whether its own error is
 // small against the smallest error of a configuration.
 static void judge_noise(cJSON *results)
