@@ -7,7 +7,7 @@
 #define FRAMES_TO_LEARN    3u
 #define CLIMB_FRACTION     0.8  // of the target
 #define MIN_RATIO          1.25 // so that a drop that gained little is not undone at once
-#define LOWER_ROW_FRACTION 0.5f // convergence reported for the last frame of a lower row
+#define LOWER_ROW_FRACTION 0.5f // the highest convergence of a lower row
 
 void quality_controller_move(struct quality_controller *controller, uint64_t now_us)
 {
