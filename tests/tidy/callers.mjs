@@ -55,6 +55,9 @@ function unusedMacros(files) {
   return defined.filter((macro) => isOurs(macro) && !used.has(macro.name) && !pasted.some((part) => part(macro.name)));
 }
 
+/** Defines for shaders stand in strings: "STAGE LISTS_RESET\\n". */
+const definesIn = (string) => string.replaceAll('\\n', ' ').match(/\b[A-Z][A-Z0-9_]+\b/g) ?? [];
+
 /** Names that macros build: for PREFIX_##x all names with that prefix, for x##_SUFFIX all names with that suffix. */
 function pastedParts(files) {
   const parts = [];

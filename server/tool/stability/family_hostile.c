@@ -1,5 +1,6 @@
 // Hostile files, messages and edits. Counts how many broke something: were accepted though they are
 // wrong, were refused without a reason, or left a document that violates scene.h.
+#include <assert.h>
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -169,6 +170,7 @@ static const char *try_message(const char *text, size_t size, struct command *co
 {
     struct rpc_request request;
     struct rpc_error error = {0};
+    assert(command);
     *out_taken = false;
     bool parsed = rpc_request_parse(text, size, &request, &error);
     if (parsed) {
