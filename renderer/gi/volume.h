@@ -49,20 +49,20 @@ struct voxel_light_state {
     bool settled_once;   // since the volume was created
     bool start_pending;  // the next frame starts a cache generation
     bool converged;
-    bool unlimited;           // number of bounces
-    bool all_faces_requested; // trace all faces, not only requested ones
-    bool feeds;               // voxels include the cache's bounce
-    uint32_t generation;      // 1 to 65535, then wraps to 1
-    uint32_t bounce;          // generations completed since the last change of light
-    uint32_t needed;          // generations for the wanted bounces
-    uint32_t unrequested_frames;    // frames in a row with nothing to trace
-    uint32_t left;            // stale faces in the newest report
-    uint32_t next_level;      // next to inject, where a frame does one level
-    uint32_t version;         // counts changes of the radiance that cones see
-    float change;             // in the last complete generation, relative to the brightest face
-    float rest;               // residual: estimated relative change still to come
-    float peak;               // brightest face of that generation / scale
-    double entry_ms;          // measured cost of tracing a face
+    bool unlimited;              // number of bounces
+    bool all_faces_requested;    // trace all faces, not only requested ones
+    bool feeds;                  // voxels include the cache's bounce
+    uint32_t generation;         // 1 to 65535, then wraps to 1
+    uint32_t bounce;             // generations completed since the last change of light
+    uint32_t needed;             // generations for the wanted bounces
+    uint32_t unrequested_frames; // frames in a row with nothing to trace
+    uint32_t left;               // stale faces in the newest report
+    uint32_t next_level;         // next to inject, where a frame does one level
+    uint32_t version;            // counts changes of the radiance that cones see
+    float change;                // in the last complete generation, relative to the brightest face
+    float rest;                  // residual: estimated relative change still to come
+    float peak;                  // brightest face of that generation / scale
+    double entry_ms;             // measured cost of tracing a face
 };
 
 struct voxel_volume {

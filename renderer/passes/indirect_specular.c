@@ -6,7 +6,6 @@
 #include "renderer/gi/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
-#include "server/accuracy/bench_run.h"
 
 static const char *indirect_specular_skip_reason(const struct frame *frame)
 {
