@@ -163,10 +163,27 @@ static uint32_t list_goldens(struct golden *goldens, uint32_t capacity)
         {"gi-cornell-objects", "builtin:cornell-objects", .gi_method = GI_METHOD_CLIPMAP},
         {"gi-atrium", "builtin:atrium", .gi_method = GI_METHOD_CLIPMAP},
         {"gi-material-grid", "builtin:material-grid", .gi_method = GI_METHOD_GRID},
+        {"gi-high-cornell", "builtin:cornell", .gi_method = GI_METHOD_CLIPMAP,
+         .quality = QUALITY_HIGH},
+        {"gi-final-cornell", "builtin:cornell", .gi_method = GI_METHOD_GRID,
+         .quality = QUALITY_FINAL},
     };
     for (size_t i = 0; i < sizeof(lit) / sizeof(lit[0]) && count < capacity; i++) {
         goldens[count] = lit[i];
-        goldens[count++].quality = QUALITY_INTERACTIVE;
+        if (goldens[count].quality == QUALITY_DRAFT)
+            goldens[count].quality = QUALITY_INTERACTIVE;
+        count++;
+    }
+    // What voxels, cache and tiles hold, once light has converged. The age of requests has no end.
+    for (int view = DEBUG_VIEW_VOXEL_OPACITY; view < DEBUG_VIEW_COUNT && count < capacity; view++) {
+        if (view == DEBUG_VIEW_CACHE_AGE)
+            continue;
+        struct golden *golden = &goldens[count++];
+        *golden = (struct golden){.view = (enum debug_view)view,
+                                  .quality = QUALITY_INTERACTIVE,
+                                  .gi_method = GI_METHOD_CLIPMAP};
+        snprintf(golden->name, sizeof(golden->name), "view-%s", debug_view_names[view]);
+        snprintf(golden->scene, sizeof(golden->scene), "builtin:cornell-objects");
     }
     if (count < capacity)
         goldens[count++] = (struct golden){
@@ -174,9 +191,17 @@ static uint32_t list_goldens(struct golden *goldens, uint32_t capacity)
     return count;
 }
 
+static bool is_named(const struct golden *golden, char **names)
+{
+    for (; *names; names++)
+        if (strcmp(*names, golden->name) == 0)
+            return true;
+    return false;
+}
+
 int main(int argc, char **argv)
 {
-    bool updating = argc == 2 && strcmp(argv[1], "--update") == 0;
+    bool updating = argc > 1 && strcmp(argv[1], "--update") == 0;
     log_set_level(LOG_ERROR);
     struct error error;
     struct renderer *renderer = renderer_create(&(struct renderer_params){.gpu = "auto"}, &error);
@@ -187,6 +212,8 @@ int main(int argc, char **argv)
     struct golden goldens[64];
     uint32_t count = list_goldens(goldens, 64), failed = 0;
     for (uint32_t i = 0; i < count; i++) {
+        if (argc > 2 && !is_named(&goldens[i], argv + 2))
+            continue;
         uint8_t *rgb = render(renderer, &goldens[i]);
         bool done = rgb && (updating ? update(&goldens[i], rgb) : compare(&goldens[i], rgb));
         failed += !done;
