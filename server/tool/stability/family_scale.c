@@ -166,7 +166,7 @@ static void run_depth(struct stability_run *run)
         .name = "scaled-" text,                                                                    \
         .invariant =                                                                               \
             "scene, lights and camera times " text " (candela times its square) look the same",    \
-        .methods = STABILITY_ALL, .bound = 0.005, .unit = "mean FLIP", .run = run_scaled,          \
+        .methods = STABILITY_ALL, .bound = 0.0028, .unit = "mean FLIP", .run = run_scaled,         \
         .variant = (power),                                                                        \
     }
 
