@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/gpu_scene/gpu_scene.h"

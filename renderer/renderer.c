@@ -11,6 +11,8 @@
 #include "renderer/finite_check.h"
 #include "renderer/frame/frame_block.h"
 #include "renderer/gi/gi.h"
+#include "renderer/gi/voxel/light_schedule.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/gpu_scene/gpu_scene.h"
@@ -22,13 +24,11 @@ struct renderer {
     struct gpu *gpu;
     struct gpu_scene *gpu_scene; // NULL while no scene is set
     struct scene *scene;
-    uint64_t scene_number; // tells apart scenes that were set one after another
     struct gi gi;
     uint32_t view_count;
     struct view *views[RENDERER_MAX_VIEWS]; // the first view_count are valid
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
-    struct live_scene live_scene;    // for the references
     bool lost;                       // the GL context is lost
     bool (*admit_frame)(void *user); // NULL: always admitted
     void *user;
@@ -77,7 +77,6 @@ void renderer_destroy(struct renderer **renderer_slot)
         return;
     assert(renderer->view_count == 0);
     ray_scene_destroy(&renderer->ray_scene);
-    live_scene_finish(&renderer->live_scene);
     gi_finish(&renderer->gi);
     gpu_scene_destroy(&renderer->gpu_scene);
     gpu_destroy(&renderer->gpu);
@@ -122,12 +121,10 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
         live_reference_finish(&renderer->views[i]->reference);
     }
     ray_scene_destroy(&renderer->ray_scene);
-    live_scene_finish(&renderer->live_scene);
-    gi_release_all(&renderer->gi);
+    gi_set_scene(&renderer->gi, scene);
     gpu_scene_destroy(&renderer->gpu_scene);
     renderer->gpu_scene = gpu_scene;
     renderer->scene = scene;
-    renderer->scene_number++;
     return true;
 }
 
@@ -188,7 +185,7 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
         frame->visibility_changed = true;
         frame->unchanged = false;
     }
-    if (!gi_plan_accumulation(frame, out_error))
+    if (!gi_plan_frame(frame, out_error))
         return false;
     frame->width = view->width;
     frame->height = view->height;
@@ -203,8 +200,7 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
         draw_list_fill(&view->draws, frame->gpu_scene, block.clip_from_world, frame->camera.eye);
     gpu_scene_bind(frame->gpu_scene);
     view_bind(view);
-    if (frame->volume)
-        voxel_volume_bind(frame->volume);
+    gi_bind_frame(frame);
     return passes_execute(frame, out_error);
 }
 
@@ -220,62 +216,6 @@ static bool params_are_valid(const struct frame_params *params, struct error *ou
             !isfinite(camera->up[axis]))
             return error_set(out_error, "the camera's placement is not finite");
     return isfinite(camera->fov_y_rad) || error_set(out_error, "the field of view is not finite");
-}
-
-static bool shows_reference(const struct frame_params *params)
-{
-    return params->settings.gi_method == GI_METHOD_REFERENCE &&
-           (params->debug_view == DEBUG_VIEW_FINAL || params->debug_view == DEBUG_VIEW_DIRECT);
-}
-
-// Updates the view's reference, if it has one, and puts its image into the frame. Until there is
-// one, the frame shows direct light. Returns RENDER_DRAWN if the frame is to be drawn.
-static enum render_result take_reference(struct renderer *renderer, struct frame *frame, bool same)
-{
-    struct view *view = frame->view;
-    const struct frame_params *params = frame->params;
-    const struct render_settings *settings = &params->settings;
-    if (!shows_reference(params)) {
-        live_reference_finish(&view->reference);
-        return RENDER_DRAWN;
-    }
-    const struct live_params wanted = {
-        .scene = renderer->scene,
-        .scene_number = renderer->scene_number,
-        .camera = params->camera,
-        .width = params->width,
-        .height = params->height,
-        .max_bounces = settings->bounces ? settings->bounces : REFERENCE_UNLIMITED,
-        .all_blinn_phong = settings->shading_model == SHADING_MODEL_BLINN_PHONG,
-        .direct_only = params->debug_view == DEBUG_VIEW_DIRECT,
-    };
-    struct error error = {""};
-    enum live_state state =
-        live_reference_update(&view->reference, &renderer->live_scene, &wanted, &error);
-    if (error.message[0])
-        log_write(LOG_ERROR, "reference_failed reason=\"%s\"", error.message);
-    if (same && state == LIVE_FINISHED)
-        return RENDER_UNCHANGED;
-    if (same && state != LIVE_NEW)
-        return RENDER_PENDING;
-    if (view->reference.shown_samples > 0)
-        frame->reference_picture = view->reference.rgba;
-    return RENDER_DRAWN;
-}
-
-// Convergence of the frame that has just been drawn: first of the light in voxels, then of the
-// accumulation.
-static float view_convergence(const struct frame *frame)
-{
-    if (shows_reference(frame->params))
-        return live_reference_convergence(&frame->view->reference);
-    if (!frame->volume)
-        return 1.0f;
-    float light = voxel_light_convergence(frame->volume);
-    if (light < 1.0f || frame->accumulation_target <= 1)
-        return light < 1.0f ? 0.9f * light : 1.0f;
-    float averaged = (float)frame->accumulated_samples / (float)frame->accumulation_target;
-    return fminf(0.9f + 0.1f * averaged, 1.0f);
 }
 
 bool renderer_admit_frame(const struct renderer *renderer)
@@ -299,7 +239,7 @@ static void queue_readback(const struct frame *frame, double started_ms)
         .width = params->width,
         .height = params->height,
         .output = params->output,
-        .convergence = view_convergence(frame),
+        .convergence = gi_convergence(frame),
     };
     if (frame->reference_picture) {
         const struct live_reference *live = &view->reference;
@@ -339,7 +279,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         return RENDER_BUSY;
     struct gpu_scene *gpu_scene = renderer->gpu_scene;
     const struct scene_revisions revisions = renderer->scene->revisions;
-    bool same_scene = view->drawn && view->last_scene == renderer->scene_number;
+    bool same_scene = view->drawn && view->last_scene == renderer->gi.scene_number;
     bool same = same_scene && params_equal(&view->last_params, params) &&
                 memcmp(&view->last_revisions, &revisions, sizeof(revisions)) == 0;
     if (same && view->last_convergence >= 1.0f)
@@ -358,12 +298,12 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     };
     gpu_scene_from_world(gpu_scene, params->camera.eye, frame.camera.eye);
     gpu_scene_from_world(gpu_scene, params->camera.target, frame.camera.target);
-    enum render_result result = take_reference(renderer, &frame, same);
-    if (result != RENDER_DRAWN)
-        return result;
+    enum gi_readiness readiness = gi_prepare_frame(&renderer->gi, &frame, same);
+    if (readiness != GI_READY)
+        return readiness == GI_PENDING ? RENDER_PENDING : RENDER_UNCHANGED;
     if (!gpu_scene_update(gpu_scene, out_error))
         return RENDER_FAILED;
-    effects_plan(&frame.plan, gpu_scene, params);
+    effects_plan(&frame.plan, gpu_scene, params, frame.gi_capabilities);
     view->last_plan = frame.plan; // skip reasons may point into the plan
     if (!draw_frame(renderer, &frame, out_error)) {
         view->drawn = false;
@@ -373,7 +313,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
     view->drawn = true;
     view->last_params = *params;
     view->last_revisions = revisions;
-    view->last_scene = renderer->scene_number;
+    view->last_scene = renderer->gi.scene_number;
     return RENDER_DRAWN;
 }
 

@@ -66,7 +66,7 @@ static void decide_count(struct effect_plan *plan, enum effect effect, uint32_t 
 // Effects of global illumination. Returns those that the settings allow; the others stay off even
 // when all effects are forced.
 static uint32_t plan_indirect(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
-                              const struct frame_params *params)
+                              const struct frame_params *params, uint32_t gi_capabilities)
 {
     const struct render_settings *settings = &params->settings;
     const struct gpu_scene_counts *counts = &gpu_scene->counts;
@@ -77,11 +77,11 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct gpu_scene *
         EFFECT_INDIRECT_DIFFUSE,  EFFECT_MULTI_BOUNCE, EFFECT_INDIRECT_SPECULAR,
         EFFECT_REFRACTION,        EFFECT_SOFT_SHADOWS, EFFECT_AMBIENT_OCCLUSION,
         EFFECT_ENVIRONMENT_LIGHT, EFFECT_VOXEL_COLORS, EFFECT_CLIP_LEVELS};
-    if (settings->gi_method == GI_METHOD_NONE || settings->gi_method == GI_METHOD_REFERENCE) {
+    if (!(gi_capabilities & GI_HAS_CONES)) {
         for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
             decide(plan, all[i], false,
-                   settings->gi_method == GI_METHOD_NONE ? "no global illumination chosen"
-                                                         : "the method is reference");
+                   gi_capabilities & GI_IS_REFERENCE ? "the method is reference"
+                                                     : "no global illumination chosen");
         return 0;
     }
     bool environment = settings->environment_light && has_environment(gpu_scene);
@@ -124,14 +124,14 @@ static uint32_t plan_indirect(struct effect_plan *plan, const struct gpu_scene *
     bool colors = counts->textured_materials > 0 || counts->colored_primitives > 0;
     decide(plan, EFFECT_VOXEL_COLORS, colors,
            colors ? "textures or vertex colours in the scene" : "no textures or vertex colours");
-    bool clipmap = settings->gi_method == GI_METHOD_CLIPMAP;
+    bool clipmap = (gi_capabilities & GI_HAS_CLIP_LEVELS) != 0;
     decide(plan, EFFECT_CLIP_LEVELS, clipmap,
            clipmap ? "the method is clipmap" : "the method is grid");
     return allowed | EFFECT_BIT(EFFECT_VOXEL_COLORS);
 }
 
 void effects_plan(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
-                  const struct frame_params *params)
+                  const struct frame_params *params, uint32_t gi_capabilities)
 {
     *plan = (struct effect_plan){0};
     const struct render_settings *settings = &params->settings;
@@ -173,7 +173,7 @@ void effects_plan(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
     if (!settings->shadows)
         chosen |= EFFECT_BIT(EFFECT_SHADOWS) | EFFECT_BIT(EFFECT_SINGLE_VIEW_SHADOWS) |
                   EFFECT_BIT(EFFECT_POINT_SHADOWS);
-    uint32_t allowed = plan_indirect(plan, gpu_scene, params) | ~chosen;
+    uint32_t allowed = plan_indirect(plan, gpu_scene, params, gi_capabilities) | ~chosen;
     if (settings->force_all_effects)
         for (int i = 0; i < EFFECT_COUNT; i++)
             if ((allowed & EFFECT_BIT(i)) && !(plan->bits & EFFECT_BIT(i)))

@@ -7,6 +7,13 @@
 #include "renderer/frame/frame_params.h"
 #include "renderer/frame/frame_statistics.h"
 
+// What a method of global illumination offers: effects are planned by it, and passes ask for it.
+enum gi_capability {
+    GI_HAS_CONES = 1, // filtered voxels that cones are traced through, and a cache of irradiance
+    GI_HAS_CLIP_LEVELS = 2, // several levels with cells of their own
+    GI_IS_REFERENCE = 4,    // makes the whole image itself
+};
+
 enum effect {
     EFFECT_TEXTURES,
     EFFECT_ALPHA_MASK,
@@ -59,7 +66,7 @@ struct effect_plan {
 
 // Plans effects from the scene's contents and the settings.
 void effects_plan(struct effect_plan *plan, const struct gpu_scene *gpu_scene,
-                  const struct frame_params *params);
+                  const struct frame_params *params, uint32_t gi_capabilities);
 
 const char *effect_name(enum effect effect);
 

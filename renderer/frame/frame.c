@@ -27,7 +27,7 @@ uint32_t frame_accumulation_planes(const struct frame *frame)
 
 bool frame_wants_ray_shadows(const struct frame *frame)
 {
-    return frame->volume && frame_gather_mode(frame) == GATHER_RAYS &&
+    return frame_has_cones(frame) && frame_gather_mode(frame) == GATHER_RAYS &&
            frame_has(frame, EFFECT_SOFT_SHADOWS) &&
            frame->gpu_scene->counts.lights <= FRAME_MAX_RAY_LIGHTS;
 }
@@ -50,6 +50,6 @@ void frame_write_visibility_defines(const struct frame *frame,
 uint32_t frame_debug_level(const struct frame *frame)
 {
     uint32_t wanted = frame->params->debug_level;
-    uint32_t count = frame->volume ? frame->voxel_level_count : 1;
+    uint32_t count = frame_has_cones(frame) ? frame->voxel_level_count : 1;
     return wanted < count ? wanted : count - 1;
 }

@@ -35,6 +35,7 @@ struct frame {
     uint32_t tiles_x;
     uint32_t tiles_y;
     bool visibility_changed;     // by camera, size, geometry, placement or materials
+    uint32_t gi_capabilities;    // of the method: enum gi_capability
     struct voxel_volume *volume; // NULL if no effect needs voxels
     uint32_t voxel_level_count;  // levels of the volume
     bool light_converged;        // the volume's light has converged
@@ -48,6 +49,12 @@ struct frame {
     const float *reference_picture; // 4 floats per pixel, shown instead; NULL for none
 };
 
+// Whether there are filtered voxels that cones can be traced through.
+static inline bool frame_has_cones(const struct frame *frame)
+{
+    return (frame->gi_capabilities & GI_HAS_CONES) && frame->volume;
+}
+
 static inline bool frame_has(const struct frame *frame, enum effect effect)
 {
     return (frame->plan.bits & EFFECT_BIT(effect)) != 0;
@@ -56,7 +63,8 @@ static inline bool frame_has(const struct frame *frame, enum effect effect)
 // Whether soft shadows are traced with cones towards the lights.
 static inline bool frame_has_cone_shadows(const struct frame *frame)
 {
-    return frame->volume && frame_has(frame, EFFECT_SOFT_SHADOWS) && frame->quality->cone_shadows;
+    return frame_has_cones(frame) && frame_has(frame, EFFECT_SOFT_SHADOWS) &&
+           frame->quality->cone_shadows;
 }
 
 // Whether pixels get direct light; other debug views show something else.

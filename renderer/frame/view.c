@@ -138,7 +138,7 @@ static bool prepare_indirect(struct view *view, const struct frame *frame)
 {
     bool done = true;
     uint32_t effect_bits = frame->plan.bits;
-    enum gather_mode gather = frame->volume ? frame_gather_mode(frame) : GATHER_CACHE;
+    enum gather_mode gather = frame_has_cones(frame) ? frame_gather_mode(frame) : GATHER_CACHE;
     uint32_t step = frame_gather_step(frame);
     size_t accumulation =
         (size_t)((view->width + step - 1) / step) * ((view->height + step - 1) / step);
@@ -164,12 +164,12 @@ static bool prepare_indirect(struct view *view, const struct frame *frame)
 static float resolution_scale(const struct frame *frame)
 {
     // The reference chooses its own samples per pixel.
-    if (frame->params->settings.gi_method == GI_METHOD_REFERENCE)
+    if (frame->gi_capabilities & GI_IS_REFERENCE)
         return 1.0f;
     // While light converges every image is soon replaced: do not supersample a static camera until
     // then. Except without multi-bounce, where pixels request the faces.
-    bool settling = frame->volume && !frame->light_converged && !frame->visibility_changed &&
-                    frame_has(frame, EFFECT_MULTI_BOUNCE);
+    bool settling = frame_has_cones(frame) && !frame->light_converged &&
+                    !frame->visibility_changed && frame_has(frame, EFFECT_MULTI_BOUNCE);
     if (settling)
         return fminf(frame->quality->resolution_scale, 1.0f);
     return frame->quality->resolution_scale;

@@ -2,14 +2,16 @@
 #ifndef VOXCAST_RENDERER_GI_GI_H
 #define VOXCAST_RENDERER_GI_GI_H
 
-#include "renderer/frame/effects.h"
-#include "renderer/gi/light_schedule.h"
+#include "renderer/gi/gi_method.h"
+#include "renderer/path_tracer/progressive.h"
 
 // A clipmap follows a camera; views beyond this number of volumes share one.
 #define GI_MAX_SHARED_VOLUMES 6u
 // For views whose settings differ from the others' (frame_params.own_voxels).
 #define GI_MAX_OWN_VOLUMES 6u
 #define GI_MAX_VOLUMES     (GI_MAX_SHARED_VOLUMES + GI_MAX_OWN_VOLUMES)
+
+struct voxel_volume;
 
 struct gi {
     struct gpu *gpu;
@@ -21,7 +23,10 @@ struct gi {
         uint64_t serial;
     } volumes[GI_MAX_VOLUMES];
     uint64_t next_serial;
-    uint32_t trace_budget; // renderer_params.trace_budget
+    uint32_t trace_budget;        // renderer_params.trace_budget
+    struct scene *scene;          // that is shown; NULL for none
+    uint64_t scene_number;        // tells apart scenes that were set one after another
+    struct live_scene live_scene; // of references
 };
 
 void gi_init(struct gi *gi, struct gpu *gpu);
@@ -29,14 +34,16 @@ void gi_finish(struct gi *gi);
 
 struct frame;
 
-// Finds or creates the frame's volume and plans the frame's work on it. Leaves frame->volume NULL
-// if no effect needs voxels. False with a message when memory runs out.
-bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error);
+// Frees what belongs to the former scene. The new one stays the caller's; NULL for none.
+void gi_set_scene(struct gi *gi, struct scene *scene);
 
-// Plans the final gather; call once the frame's size is known. Pixels show the cache until light
-// has converged, then gather; samples accumulate while nothing moves. False with a message when
-// memory runs out.
-bool gi_plan_accumulation(struct frame *frame, struct error *out_error);
+// The hooks of the frame's method, as gi_method.h describes them; the first tells the frame what
+// the method can do.
+enum gi_readiness gi_prepare_frame(struct gi *gi, struct frame *frame, bool same);
+bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error);
+bool gi_plan_frame(struct frame *frame, struct error *out_error);
+void gi_bind_frame(const struct frame *frame);
+float gi_convergence(const struct frame *frame);
 
 // Frees volumes that are no view's newest.
 void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count);

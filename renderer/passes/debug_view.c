@@ -1,7 +1,7 @@
 // Debug views: images of intermediate results instead of the shaded scene.
 #include <stdio.h>
 
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
@@ -20,9 +20,9 @@ bool frame_shows_light(const struct frame *frame)
     case DEBUG_VIEW_VOXEL_RADIANCE:
     case DEBUG_VIEW_INDIRECT_DIFFUSE:
     case DEBUG_VIEW_INDIRECT_SPECULAR:
-        return frame->volume != NULL;
+        return frame_has_cones(frame);
     case DEBUG_VIEW_VOXEL_IRRADIANCE:
-        return frame->volume && debug_level_has_cells(frame);
+        return frame_has_cones(frame) && debug_level_has_cells(frame);
     default:
         return false;
     }
@@ -30,7 +30,7 @@ bool frame_shows_light(const struct frame *frame)
 
 const char *frame_blank_reason(const struct frame *frame)
 {
-    if (!debug_view_needs_voxels(frame->params->debug_view) || frame->volume)
+    if (!debug_view_needs_voxels(frame->params->debug_view) || frame_has_cones(frame))
         return NULL;
     return "plain grey: without global illumination there are no voxels to show";
 }

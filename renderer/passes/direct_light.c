@@ -1,7 +1,6 @@
 // Direct light from punctual and area lights.
 #include <stdio.h>
 
-#include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 #include "shared/display.h"
@@ -26,8 +25,9 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
     frame_write_visibility_defines(frame, visibility);
     snprintf(extra, sizeof(extra), "ADDED_TO %d\n%s", added_to, visibility);
     const struct gpu_program *program =
-        frame->volume ? voxel_program(frame, pass, "light/direct_light.comp", extra, out_error)
-                      : pass_program(frame, pass, "light/direct_light.comp", extra, out_error);
+        frame_has_cones(frame)
+            ? voxel_program(frame, pass, "light/direct_light.comp", extra, out_error)
+            : pass_program(frame, pass, "light/direct_light.comp", extra, out_error);
     if (!program)
         return false;
     pass_dispatch_pixels(frame, program);

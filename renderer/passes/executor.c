@@ -1,6 +1,6 @@
 #include <stdio.h>
 
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/timer.h"
 #include "renderer/log.h"

@@ -1,14 +1,13 @@
 // Indirect diffuse light: from the irradiance cache, or by cones or rays at pixels.
 #include <stdio.h>
 
-#include "renderer/gi/gi.h"
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
 static const char *indirect_diffuse_skip_reason(const struct frame *frame)
 {
-    if (!frame->volume || !frame_has(frame, EFFECT_INDIRECT_DIFFUSE))
+    if (!frame_has_cones(frame) || !frame_has(frame, EFFECT_INDIRECT_DIFFUSE))
         return frame->view->last_plan.reasons[EFFECT_INDIRECT_DIFFUSE];
     bool shown = frame->params->debug_view == DEBUG_VIEW_FINAL ||
                  frame->params->debug_view == DEBUG_VIEW_INDIRECT_DIFFUSE;

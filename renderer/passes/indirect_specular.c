@@ -2,14 +2,13 @@
 // pixels.
 #include <stdio.h>
 
-#include "renderer/gi/gi.h"
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
 static const char *indirect_specular_skip_reason(const struct frame *frame)
 {
-    if (!frame->volume || !frame_has(frame, EFFECT_INDIRECT_SPECULAR))
+    if (!frame_has_cones(frame) || !frame_has(frame, EFFECT_INDIRECT_SPECULAR))
         return frame->view->last_plan.reasons[EFFECT_INDIRECT_SPECULAR];
     bool shown = frame->params->debug_view == DEBUG_VIEW_FINAL ||
                  frame->params->debug_view == DEBUG_VIEW_INDIRECT_SPECULAR;

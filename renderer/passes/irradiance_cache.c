@@ -1,5 +1,5 @@
 // Traces the cones of requested voxel faces, within the frame's budget.
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
@@ -8,7 +8,7 @@
 
 static const char *irradiance_cache_skip_reason(const struct frame *frame)
 {
-    if (!frame->volume)
+    if (!frame_has_cones(frame))
         return "no effect needs voxels";
     if (!frame_has(frame, EFFECT_INDIRECT_DIFFUSE))
         return "no surface passes light on";

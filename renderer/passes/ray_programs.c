@@ -1,7 +1,6 @@
 // Shared by the passes that trace rays: programs that shade hits, and the filter.
 #include <stdio.h>
 
-#include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/gpu_scene/gpu_scene.h"

@@ -1,12 +1,11 @@
 // Traced visibility of area and sphere lights at pixels. Without this pass, cones or the shadow map
 // give it.
-#include "renderer/gi/gi.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
 static const char *ray_shadows_skip_reason(const struct frame *frame)
 {
-    if (!frame->volume || !frame_has(frame, EFFECT_SOFT_SHADOWS))
+    if (!frame_has_cones(frame) || !frame_has(frame, EFFECT_SOFT_SHADOWS))
         return frame->view->last_plan.reasons[EFFECT_SOFT_SHADOWS];
     if (!frame_lights_pixels(frame))
         return "the debug view shows no light";

@@ -1,5 +1,5 @@
 // Copies the output and then the exposure into the readback ring.
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
@@ -14,7 +14,7 @@ static bool readback_run(struct frame *frame, const struct pass *pass, struct er
     gpu_buffer_copy(view->ring[view->ring_next].pixels, 0, view->output, 0, bytes);
     gpu_buffer_copy(view->ring[view->ring_next].pixels, bytes, view->exposure, 0,
                     VIEW_EXPOSURE_BYTES);
-    if (frame->volume)
+    if (frame_has_cones(frame))
         gpu_buffer_copy(view->ring[view->ring_next].pixels, bytes + VIEW_EXPOSURE_BYTES,
                         frame->volume->counters, COUNTER_OVERFLOW * 4, VIEW_REPORT_BYTES);
     return true;

@@ -25,9 +25,10 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
     char extra[32];
     snprintf(extra, sizeof(extra), "CONE_SHADOWS %d\n", frame_has_cone_shadows(frame));
     const struct gpu_program *shade =
-        !tiles          ? NULL
-        : frame->volume ? voxel_program(frame, pass, "light/transparency.comp", extra, out_error)
-                        : pass_program(frame, pass, "light/transparency.comp", "", out_error);
+        !tiles ? NULL
+        : frame_has_cones(frame)
+            ? voxel_program(frame, pass, "light/transparency.comp", extra, out_error)
+            : pass_program(frame, pass, "light/transparency.comp", "", out_error);
     if (!shade)
         return false;
     gpu_buffer_clear(view->fragments);

@@ -1,12 +1,12 @@
 // Filters each finer level into the mip levels of a grid, or into the middle of the next clip
 // level.
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
 static const char *voxel_filter_skip_reason(const struct frame *frame)
 {
-    if (!frame->volume)
+    if (!frame_has_cones(frame))
         return "no effect needs voxels";
     if (frame->volume->level_count == 1)
         return "one level only";

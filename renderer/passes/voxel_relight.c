@@ -1,13 +1,13 @@
 // Injects light into occupied voxels: direct light, emission, and the cache's bounce.
 #include <stdio.h>
 
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
 static const char *voxel_relight_skip_reason(const struct frame *frame)
 {
-    if (!frame->volume)
+    if (!frame_has_cones(frame))
         return "no effect needs voxels";
     return frame->light_work.relight ? NULL : "light in voxels unchanged";
 }

@@ -1,5 +1,5 @@
 // Voxelizes the triangles of newly covered regions.
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 
@@ -12,7 +12,7 @@
 
 static const char *voxelize_skip_reason(const struct frame *frame)
 {
-    if (!frame->volume)
+    if (!frame_has_cones(frame))
         return "no effect needs voxels";
     return frame->light_work.voxelize ? NULL : "geometry and clip levels unmoved";
 }

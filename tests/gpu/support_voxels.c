@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "renderer/gi/gi_method.h"
 #include "support_gpu.h"
 #include "voxcast_paths.h"
 
@@ -67,7 +68,8 @@ static struct frame begin(struct voxel_rig *rig, struct voxel_volume *volume)
         .quality = &quality_levels[QUALITY_FINAL],
         .volume = volume,
     };
-    effects_plan(&frame.plan, rig->gpu_scene, &rig->params);
+    frame.gi_capabilities = gi_methods[volume->params.method]->capabilities;
+    effects_plan(&frame.plan, rig->gpu_scene, &rig->params, frame.gi_capabilities);
     return frame;
 }
 

@@ -3,7 +3,7 @@
 #ifndef VOXCAST_TESTS_GPU_SUPPORT_VOXELS_H
 #define VOXCAST_TESTS_GPU_SUPPORT_VOXELS_H
 
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 #include "renderer/frame/view.h"
 

@@ -16,7 +16,7 @@
 
 #define EDGE        32u
 #define CLIP_LEVELS 3u
-#define SNAP_VOXELS 2u // as in renderer/gi/volume.c
+#define SNAP_VOXELS 2u // as in renderer/gi/voxel/volume.c
 #define OBJECTS     8u
 #define STEPS       200u
 #define CHECK_EVERY 40u

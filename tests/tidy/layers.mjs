@@ -63,7 +63,13 @@ export const LAYERS = [
   },
   {
     folder: 'renderer/gi',
+    may: ['renderer/frame', 'renderer/path_tracer', 'renderer/scene', ...BASE, ...SETTINGS],
+    why: 'the seam: the methods, and what a renderer keeps for them',
+  },
+  ...['voxel', 'path_traced'].map((method) => ({
+    folder: `renderer/gi/${method}`,
     may: [
+      'renderer/gi',
       'renderer/frame',
       'renderer/gpu_scene',
       'renderer/gpu',
@@ -72,12 +78,13 @@ export const LAYERS = [
       ...BASE,
       ...SETTINGS,
     ],
-    why: 'plans and keeps indirect light; passes draw it',
-  },
+    why: 'a method: plans and keeps indirect light; passes draw it',
+  })),
   {
     folder: 'renderer/passes',
     may: [
       'renderer/gi',
+      'renderer/gi/voxel',
       'renderer/frame',
       'renderer/gpu_scene',
       'renderer/gpu',
@@ -93,6 +100,7 @@ export const LAYERS = [
     may: [
       'renderer/passes',
       'renderer/gi',
+      'renderer/gi/voxel',
       'renderer/frame',
       'renderer/gpu_scene',
       'renderer/path_tracer',

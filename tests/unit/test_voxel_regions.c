@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "renderer/gi/regions.h"
+#include "renderer/gi/voxel/regions.h"
 
 #define SPACE 20 // voxels along an edge of the space that holds the boxes
 #define LEVEL 8

@@ -2,10 +2,10 @@
 // that cones march through. A clipmap follows a camera; a grid covers the scene.
 //
 // Render thread only.
-#ifndef VOXCAST_RENDERER_GI_VOLUME_H
-#define VOXCAST_RENDERER_GI_VOLUME_H
+#ifndef VOXCAST_RENDERER_GI_VOXEL_VOLUME_H
+#define VOXCAST_RENDERER_GI_VOXEL_VOLUME_H
 
-#include "renderer/gi/regions.h"
+#include "renderer/gi/voxel/regions.h"
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu_scene/gpu_scene.h"

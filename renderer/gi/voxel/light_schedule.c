@@ -1,4 +1,4 @@
-#include "renderer/gi/light_schedule.h"
+#include "renderer/gi/voxel/light_schedule.h"
 
 #include <math.h>
 #include <string.h>

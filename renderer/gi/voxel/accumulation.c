@@ -1,9 +1,9 @@
 // Final gather of a frame: pixels read the cache, or trace samples of their own that accumulate
 // while nothing moves.
 #include "renderer/frame/view.h"
-#include "renderer/gi/gi.h"
-#include "renderer/gi/light_hash.h"
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/accumulation.h"
+#include "renderer/gi/voxel/light_hash.h"
+#include "renderer/gi/voxel/volume.h"
 
 // Frames in a row without a new image while the cache converges.
 #define MAX_ACCUMULATE_ONLY_FRAMES 7u

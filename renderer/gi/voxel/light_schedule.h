@@ -1,10 +1,10 @@
 // Schedules how light converges in a volume over frames: injection into voxels, and generations of
 // the irradiance cache, each of which adds one bounce.
-#ifndef VOXCAST_RENDERER_GI_LIGHT_SCHEDULE_H
-#define VOXCAST_RENDERER_GI_LIGHT_SCHEDULE_H
+#ifndef VOXCAST_RENDERER_GI_VOXEL_LIGHT_SCHEDULE_H
+#define VOXCAST_RENDERER_GI_VOXEL_LIGHT_SCHEDULE_H
 
 #include "renderer/frame/frame.h"
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 
 struct voxel_light_params {
     uint64_t key;      // hash of what light depends on, except the camera

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 #include "renderer/scene/scene.h"
 
 // Up to this number of instances each has its own surfels. Beyond, instances of equal material

@@ -1,6 +1,6 @@
 // Boxes of voxels, and which of them to refill when a level or an object moves. Pure functions.
-#ifndef VOXCAST_RENDERER_GI_REGIONS_H
-#define VOXCAST_RENDERER_GI_REGIONS_H
+#ifndef VOXCAST_RENDERER_GI_VOXEL_REGIONS_H
+#define VOXCAST_RENDERER_GI_VOXEL_REGIONS_H
 
 #include <stdbool.h>
 #include <stdint.h>

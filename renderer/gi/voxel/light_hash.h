@@ -1,6 +1,6 @@
 // FNV-1a hashes of what light depends on.
-#ifndef VOXCAST_RENDERER_GI_LIGHT_HASH_H
-#define VOXCAST_RENDERER_GI_LIGHT_HASH_H
+#ifndef VOXCAST_RENDERER_GI_VOXEL_LIGHT_HASH_H
+#define VOXCAST_RENDERER_GI_VOXEL_LIGHT_HASH_H
 
 #include <stdint.h>
 #include <string.h>

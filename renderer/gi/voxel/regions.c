@@ -1,4 +1,4 @@
-#include "renderer/gi/regions.h"
+#include "renderer/gi/voxel/regions.h"
 
 #define MAX_BOXES (VOXEL_MAX_REGIONS / VOXEL_MAX_LEVELS)
 

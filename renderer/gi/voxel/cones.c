@@ -1,4 +1,4 @@
-#include "renderer/gi/cones.h"
+#include "renderer/gi/voxel/cones.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/gi/volume.h"
+#include "renderer/gi/voxel/volume.h"
 
 #include <math.h>
 #include <stdlib.h>

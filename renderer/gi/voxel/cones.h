@@ -1,6 +1,6 @@
 // Cone sets over a hemisphere.
-#ifndef VOXCAST_RENDERER_GI_CONES_H
-#define VOXCAST_RENDERER_GI_CONES_H
+#ifndef VOXCAST_RENDERER_GI_VOXEL_CONES_H
+#define VOXCAST_RENDERER_GI_VOXEL_CONES_H
 
 #include "renderer/settings.h"
 #include "shared/voxel_block.h"

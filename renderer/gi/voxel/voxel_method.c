@@ -1,0 +1,364 @@
+// Global illumination by voxels: the volumes of all views, and what a frame does with one.
+#include "renderer/gi/gi.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "renderer/gi/voxel/cones.h"
+#include "renderer/gi/voxel/accumulation.h"
+#include "renderer/gi/voxel/light_hash.h"
+#include "renderer/frame/view.h"
+#include "renderer/gi/voxel/light_schedule.h"
+#include "renderer/gi/voxel/volume.h"
+
+// Target for the stored radiance of the brightest lit surface: far from both ends of a half float's
+// range.
+#define STORED_PEAK 256.0f
+// Keep the scale while radiance is at most so much brighter or darker than when it was chosen.
+#define SCALE_GROWTH 8.0f
+#define SCALE_DECAY  64.0f
+// Reach of ambient occlusion, as a fraction of the scene's diagonal.
+#define OCCLUSION_FRACTION 0.05f
+// Cones start so many voxels above the surface.
+#define START_VOXELS           1.0f
+#define START_VOXELS_ISOTROPIC 2.0f
+// Cache cones where the settings leave them open.
+#define CACHE_CONES CONE_SET_16
+#define CACHE_STEP  1.0f
+
+void gi_release_all(struct gi *gi)
+{
+    for (uint32_t i = 0; i < gi->volume_count; i++)
+        voxel_volume_destroy(&gi->volumes[i].volume);
+    gi->volume_count = 0;
+}
+
+void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count)
+{
+    for (uint32_t i = 0; i < gi->volume_count;) {
+        bool used = false;
+        for (uint32_t j = 0; j < view_count; j++)
+            used = used || views[j]->volume_serial == gi->volumes[i].serial;
+        if (used) {
+            i++;
+            continue;
+        }
+        voxel_volume_destroy(&gi->volumes[i].volume);
+        gi->volumes[i] = gi->volumes[--gi->volume_count];
+    }
+}
+
+struct voxel_volume *gi_find(const struct gi *gi, uint64_t serial)
+{
+    for (uint32_t i = 0; i < gi->volume_count; i++)
+        if (gi->volumes[i].serial == serial)
+            return gi->volumes[i].volume;
+    return NULL;
+}
+
+// Independent of quality: views of different quality share the cache.
+static enum cone_set cache_cones_of(const struct render_settings *settings)
+{
+    return settings->cone_set == CONE_SET_AUTO ? CACHE_CONES : settings->cone_set;
+}
+
+static uint32_t edge_of(enum voxel_resolution resolution)
+{
+    return 32u << resolution;
+}
+
+// GPUs afford 128. On CPUs a scene that needs several clip levels converges several times sooner
+// with 64, and its extra levels keep voxels as fine near the camera.
+static enum voxel_resolution automatic_resolution(const struct frame *frame,
+                                                  const struct voxel_volume_params *params)
+{
+    if (!gpu_get_info(frame->gpu)->software)
+        return VOXEL_RESOLUTION_128;
+    struct voxel_volume_params wanted = *params;
+    wanted.edge = edge_of(frame->quality->voxel_resolution);
+    bool deep = wanted.method == GI_METHOD_CLIPMAP &&
+                frame->quality->voxel_resolution > VOXEL_RESOLUTION_64 &&
+                voxel_volume_choose_clip_levels(&wanted, frame->gpu_scene) > 1;
+    return deep ? VOXEL_RESOLUTION_64 : frame->quality->voxel_resolution;
+}
+
+static struct voxel_volume_params volume_params(const struct frame *frame)
+{
+    const struct render_settings *settings = &frame->params->settings;
+    struct voxel_volume_params params = {
+        .method = settings->gi_method,
+        .clip_levels = settings->gi_method == GI_METHOD_CLIPMAP ? settings->clip_levels : 0,
+        .directions = settings->voxel_directions,
+        .cache_cones = cone_set_count(cache_cones_of(settings)),
+        .colors = frame_has(frame, EFFECT_VOXEL_COLORS),
+    };
+    enum voxel_resolution resolution = settings->voxel_resolution;
+    if (resolution == VOXEL_RESOLUTION_AUTO)
+        resolution = automatic_resolution(frame, &params);
+    if (params.method == GI_METHOD_CLIPMAP && resolution > VOXEL_RESOLUTION_128)
+        resolution = VOXEL_RESOLUTION_128;
+    params.edge = edge_of(resolution);
+    return params;
+}
+
+static bool same_params(const struct voxel_volume_params *a, const struct voxel_volume_params *b)
+{
+    return a->method == b->method && a->edge == b->edge && a->clip_levels == b->clip_levels &&
+           a->directions == b->directions && a->cache_cones == b->cache_cones &&
+           a->colors == b->colors;
+}
+
+// First volume of the frame's kind (shared, or owned by one view) that the view may draw with. Else
+// `out_shared` is another view's clipmap, if any.
+static struct gi_volume *find_fitting(struct gi *gi, const struct frame *frame,
+                                      const struct voxel_volume_params *params,
+                                      struct gi_volume **out_shared)
+{
+    bool own = frame->params->own_voxels;
+    for (uint32_t i = 0; i < gi->volume_count; i++) {
+        struct gi_volume *it = &gi->volumes[i];
+        if (it->own != own || !same_params(&it->volume->params, params))
+            continue;
+        if (!it->owner || it->owner == frame->view)
+            return it;
+        if (!own)
+            *out_shared = it;
+    }
+    return NULL;
+}
+
+// A volume of the frame's kind that can be replaced: the view's own, or one whose settings are no
+// longer in use. NULL for none.
+static struct gi_volume *find_replaceable(struct gi *gi, const struct frame *frame,
+                                          const struct voxel_volume_params *params)
+{
+    bool own = frame->params->own_voxels;
+    struct gi_volume *stale = NULL;
+    for (uint32_t i = 0; i < gi->volume_count; i++) {
+        struct gi_volume *it = &gi->volumes[i];
+        if (it->own != own || same_params(&it->volume->params, params))
+            continue;
+        if (it->owner == frame->view)
+            return it;
+        if (!own)
+            stale = it; // shared settings have changed; its views have not been drawn since
+    }
+    return stale;
+}
+
+static uint32_t count_volumes(const struct gi *gi, bool own)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < gi->volume_count; i++)
+        count += gi->volumes[i].own == own;
+    return count;
+}
+
+// Finds or creates the volume to draw with: the view's own clipmap, or the grid; another view's
+// clipmap when there are too many. NULL when memory runs out or too many views own voxels.
+static struct gi_volume *find_volume(struct gi *gi, const struct frame *frame,
+                                     const struct voxel_volume_params *params)
+{
+    bool own = frame->params->own_voxels;
+    struct gi_volume *shared = NULL, *fitting = find_fitting(gi, frame, params, &shared);
+    if (fitting)
+        return fitting;
+    struct gi_volume *slot = NULL;
+    if (count_volumes(gi, own) == (own ? GI_MAX_OWN_VOLUMES : GI_MAX_SHARED_VOLUMES)) {
+        slot = find_replaceable(gi, frame, params);
+        if (shared && (!slot || slot->owner != frame->view))
+            return shared;
+        if (!slot)
+            return NULL;
+        voxel_volume_destroy(&slot->volume);
+        *slot = gi->volumes[--gi->volume_count];
+    }
+    struct voxel_volume *volume = voxel_volume_create(gi->gpu, params);
+    if (!volume)
+        return NULL;
+    bool owned = own || params->method == GI_METHOD_CLIPMAP;
+    slot = &gi->volumes[gi->volume_count++];
+    *slot = (struct gi_volume){.volume = volume,
+                               .owner = owned ? frame->view : NULL,
+                               .own = own,
+                               .serial = gi->next_serial++};
+    return slot;
+}
+
+static float brightest_channel(const float color[3])
+{
+    return fmaxf(color[0], fmaxf(color[1], color[2]));
+}
+
+// Power of two that radiance is divided by, so that it fits half floats. Estimated from the sum of
+// all lights' illuminance at 5 % of the scene's diagonal, from emission and from the environment.
+// Kept while it still fits, since stored radiance was divided by it.
+static float radiance_scale(const struct gpu_scene *gpu_scene, float before)
+{
+    const struct scene *scene = gpu_scene->scene;
+    float brightest = 0.0f;
+    float near = 0.05f * gpu_scene->diagonal_m;
+    for (uint32_t i = 0; i < scene->light_count; i++) {
+        const struct scene_light *light = &scene->lights[i];
+        if (light->removed || !light->enabled || !(light->intensity > 0.0f) ||
+            !isfinite(light->intensity))
+            continue;
+        float intensity = light->intensity * brightest_channel(light->color) / (float)GLM_PI;
+        bool directional = light->type == SCENE_LIGHT_DIRECTIONAL;
+        brightest += directional ? intensity : intensity / (near * near);
+    }
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        brightest = fmaxf(brightest, brightest_channel(scene->materials[i].emissive) *
+                                         scene->materials[i].emissive_strength);
+    if (scene->environment.type != SCENE_ENVIRONMENT_NONE)
+        brightest = fmaxf(brightest, scene->environment.intensity);
+    if (!(brightest > 0.0f) || !isfinite(brightest))
+        return 1.0f;
+    float scale = exp2f(ceilf(log2f(brightest / STORED_PEAK)));
+    bool suits = before > 0.0f && scale <= before * SCALE_GROWTH && scale >= before / SCALE_DECAY;
+    return suits ? before : scale;
+}
+
+// Hash of everything that light in voxels depends on. Excludes quality: views of different quality
+// share a volume and would invalidate it in turn.
+static uint64_t light_key(const struct frame *frame)
+{
+    const struct render_settings *settings = &frame->params->settings;
+    const struct scene_revisions *now = &frame->gpu_scene->scene->revisions;
+    uint64_t words[] = {
+        now->geometry,
+        now->transforms,
+        now->materials,
+        now->lights,
+        settings->environment_light ? now->environment + 1 : 0,
+        frame_has(frame, EFFECT_MULTI_BOUNCE),
+        render_settings_hash(settings, INVALIDATES_LIGHT),
+    };
+    uint64_t hash = 1469598103934665603ull;
+    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+        hash = hash_word(hash, words[i]);
+    return hash;
+}
+
+static void fill_march(struct voxel_volume *volume, enum cone_set set, float step,
+                       struct cone_march *out_march, struct voxel_cone out_cones[VOXEL_MAX_CONES])
+{
+    struct cone_directions directions;
+    cone_directions_init(&directions, set);
+    memcpy(out_cones, directions.cones, sizeof(directions.cones));
+    bool anisotropic = volume->params.directions == VOXEL_ANISOTROPIC;
+    *out_march = (struct cone_march){
+        .step_diameters = step,
+        .start_voxels = anisotropic ? START_VOXELS : START_VOXELS_ISOTROPIC,
+        .cone_count = (float)directions.count,
+        .tan_half_angle = directions.tangent,
+    };
+}
+
+static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
+{
+    const struct render_settings *settings = &frame->params->settings;
+    struct voxel_block *block = &volume->uniforms;
+    bool automatic = settings->cone_set == CONE_SET_AUTO;
+    bool own_step = settings->cone_step > 0.0f;
+    fill_march(volume, cache_cones_of(settings), own_step ? settings->cone_step : CACHE_STEP,
+               &block->cache_march, block->cache_cones);
+    fill_march(volume, automatic ? frame->quality->cone_set : settings->cone_set,
+               own_step ? settings->cone_step : frame->quality->cone_step, &block->pixel_march,
+               block->pixel_cones);
+    block->ao_radius_m = OCCLUSION_FRACTION * frame->gpu_scene->diagonal_m;
+    block->indirect_intensity = settings->indirect_intensity;
+}
+
+// Whether pixels read the cache instead of gathering the last bounce themselves.
+static bool frame_shows_cache(const struct frame *frame)
+{
+    enum debug_view view = frame->params->debug_view;
+    return frame_gather_mode(frame) == GATHER_CACHE || view == DEBUG_VIEW_VOXEL_IRRADIANCE ||
+           view == DEBUG_VIEW_AMBIENT_OCCLUSION || view == DEBUG_VIEW_CACHE_AGE;
+}
+
+// Whether only transparent layers read the cache: with one bounce pixels gather it themselves, and
+// no pixel requests faces for the layers.
+static bool layers_alone_show_cache(const struct frame *frame)
+{
+    return frame->params->settings.bounces == 1 && frame_has(frame, EFFECT_TRANSPARENCY);
+}
+
+// Whether the frame has no volume because other views use up all own volumes.
+static bool too_many_own(const struct gi *gi, const struct frame *frame)
+{
+    return frame->params->own_voxels && count_volumes(gi, true) == GI_MAX_OWN_VOLUMES;
+}
+
+static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
+{
+    frame->volume = NULL;
+    frame->view->volume_serial = 0;
+    frame->gather = frame_gather_mode(frame);
+    if (!(frame->plan.bits & VOXEL_EFFECTS))
+        return true;
+    const struct render_settings *settings = &frame->params->settings;
+    struct voxel_volume_params params = volume_params(frame);
+    struct gi_volume *found = find_volume(gi, frame, &params);
+    struct voxel_volume *volume = found ? found->volume : NULL;
+    if (volume && settings->voxelize_every_frame && params.method == GI_METHOD_GRID)
+        volume->everything = true;
+    if (!volume && too_many_own(gi, frame))
+        return error_set(out_error,
+                         "%u views have settings of their own; no more of them can have voxels",
+                         GI_MAX_OWN_VOLUMES);
+    if (!volume || !voxel_volume_update(volume, frame->gpu_scene, frame->camera.eye))
+        return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
+    frame->volume = volume;
+    frame->view->volume_serial = found->serial;
+    fill_cones(frame, volume);
+    volume->scale = radiance_scale(frame->gpu_scene, volume->scale);
+    struct voxel_light_params light = {
+        .key = light_key(frame),
+        .bounces = settings->bounces,
+        .multi_bounce = frame_has(frame, EFFECT_MULTI_BOUNCE),
+        .all_faces = frame_has(frame, EFFECT_MULTI_BOUNCE) || layers_alone_show_cache(frame),
+        .cache_shown = frame_shows_cache(frame) || layers_alone_show_cache(frame),
+        .camera_moved = frame->visibility_changed,
+        .software = gpu_get_info(gi->gpu)->software,
+        .levels_per_frame = settings->levels_per_frame,
+        .trace_budget = gi->trace_budget,
+    };
+    voxel_light_begin(volume, &light, &frame->light_work);
+    frame->voxel_level_count = volume->level_count;
+    frame->light_converged = volume->light.converged;
+    return true;
+}
+
+static void bind(const struct frame *frame)
+{
+    if (frame->volume)
+        voxel_volume_bind(frame->volume);
+}
+
+// Light in voxels first, then the samples of pixels.
+static float convergence(const struct frame *frame)
+{
+    if (!frame->volume)
+        return 1.0f;
+    float light = voxel_light_convergence(frame->volume);
+    if (light < 1.0f || frame->accumulation_target <= 1)
+        return light < 1.0f ? 0.9f * light : 1.0f;
+    float averaged = (float)frame->accumulated_samples / (float)frame->accumulation_target;
+    return fminf(0.9f + 0.1f * averaged, 1.0f);
+}
+
+#define VOXEL_HOOKS                                                                                \
+    .begin = begin, .plan = gi_plan_accumulation, .bind = bind, .convergence = convergence
+
+const struct gi_method_hooks gi_voxels_clipmap = {
+    .capabilities = GI_HAS_CONES | GI_HAS_CLIP_LEVELS,
+    VOXEL_HOOKS,
+};
+
+const struct gi_method_hooks gi_voxels_grid = {
+    .capabilities = GI_HAS_CONES,
+    VOXEL_HOOKS,
+};
