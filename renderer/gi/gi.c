@@ -1,6 +1,7 @@
 #include "renderer/gi/gi.h"
 
 #include "renderer/frame/frame.h"
+#include "renderer/frame/view.h"
 
 const struct gi_method_hooks gi_none = {0};
 
@@ -47,12 +48,17 @@ enum gi_readiness gi_prepare_frame(struct gi *gi, struct frame *frame, bool same
 bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 {
     const struct gi_method_hooks *method = method_of(frame);
+    frame->volume = NULL;
+    frame->view->volume_serial = 0;
+    frame->gather = frame_gather_mode(frame);
     return !method->begin || method->begin(gi, frame, out_error);
 }
 
 bool gi_plan_frame(struct frame *frame, struct error *out_error)
 {
     const struct gi_method_hooks *method = method_of(frame);
+    if (!method->plan)
+        frame->view->accumulated_samples = 0;
     return !method->plan || method->plan(frame, out_error);
 }
 

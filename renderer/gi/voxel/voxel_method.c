@@ -294,9 +294,6 @@ static bool too_many_own(const struct gi *gi, const struct frame *frame)
 
 static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
 {
-    frame->volume = NULL;
-    frame->view->volume_serial = 0;
-    frame->gather = frame_gather_mode(frame);
     if (!(frame->plan.bits & VOXEL_EFFECTS))
         return true;
     const struct render_settings *settings = &frame->params->settings;
