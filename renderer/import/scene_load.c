@@ -9,6 +9,23 @@
 
 #define BUILTIN_PREFIX "builtin:"
 
+// One row per kind of file.
+static const struct importer {
+    const char *extension, *format;
+    struct scene *(*import)(const char *path, struct error *out_error);
+} importers[] = {
+    {".gltf", "glTF 2.0", scene_import_gltf},
+    {".glb", "glTF 2.0", scene_import_gltf},
+    {".obj", "Wavefront OBJ", scene_import_obj},
+};
+
+#define IMPORTER_COUNT (sizeof(importers) / sizeof(importers[0]))
+
+const char *scene_file_extension(uint32_t index)
+{
+    return index < IMPORTER_COUNT ? importers[index].extension : NULL;
+}
+
 static bool has_extension(const char *path, const char *extension)
 {
     size_t length = strlen(path);
@@ -37,16 +54,20 @@ static struct scene *import_file(const char *path, struct error *out_error)
         error_set(out_error, "scene '%.200s' is not a regular file", path);
         return NULL;
     }
-    if (has_extension(path, ".gltf") || has_extension(path, ".glb") || has_glb_magic(path)) {
+    if (has_glb_magic(path))
         return scene_import_gltf(path, out_error);
-    }
-    if (has_extension(path, ".obj")) {
-        return scene_import_obj(path, out_error);
+    char kinds[256] = "";
+    size_t length = 0;
+    for (size_t i = 0; i < IMPORTER_COUNT; i++) {
+        if (has_extension(path, importers[i].extension))
+            return importers[i].import(path, out_error);
+        length += (size_t)snprintf(kinds + length, sizeof(kinds) - length, "%s (%s), ",
+                                   importers[i].format, importers[i].extension);
     }
     error_set(out_error,
-              "scene '%.200s' is of no supported kind; supported are glTF 2.0 (.gltf, .glb), "
-              "Wavefront OBJ (.obj) and the built-in scenes (builtin:NAME)",
-              path);
+              "scene '%.200s' is of no supported kind; supported are %sand the built-in scenes "
+              "(builtin:NAME)",
+              path, kinds);
     return NULL;
 }
 

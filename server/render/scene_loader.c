@@ -94,22 +94,28 @@ bool scene_loader_take(struct scene_loader *loader, struct scene **out_scene,
     return true;
 }
 
-static const char *const scene_extensions[] = {".gltf", ".glb", ".obj", NULL};
-static const char *const environment_extensions[] = {".hdr", ".exr", NULL};
+// Extensions that are wanted come from functions of an index, NULL past the last.
 
-static bool ends_with_one(const char *name, const char *const *extensions)
+static const char *environment_extension(uint32_t index)
+{
+    static const char *const extensions[] = {".hdr", ".exr"};
+    return index < 2 ? extensions[index] : NULL;
+}
+
+static bool ends_with_one(const char *name, const char *(*extension)(uint32_t))
 {
     size_t length = strlen(name);
-    for (size_t i = 0; extensions[i]; i++) {
-        size_t tail = strlen(extensions[i]);
-        if (length > tail && strcasecmp(name + length - tail, extensions[i]) == 0)
+    const char *end;
+    for (uint32_t i = 0; (end = extension(i)); i++) {
+        size_t tail = strlen(end);
+        if (length > tail && strcasecmp(name + length - tail, end) == 0)
             return true;
     }
     return false;
 }
 
 struct listing {
-    const char *const *extensions; // list that NULL ends
+    const char *(*extension)(uint32_t);
     char **sources;
     uint32_t count, capacity;
 };
@@ -125,7 +131,7 @@ static void list_folder(struct listing *listing, const char *folder, const char 
             asprintf(&path, "%s/%s", folder, entries[i]->d_name) > 0 &&
             asprintf(&source, "%s%s", prefix, entries[i]->d_name) > 0 &&
             lstat(path, &status) == 0) {
-            if (S_ISREG(status.st_mode) && ends_with_one(source, listing->extensions)) {
+            if (S_ISREG(status.st_mode) && ends_with_one(source, listing->extension)) {
                 listing->sources[listing->count++] = source;
                 source = NULL;
             } else if (S_ISDIR(status.st_mode) && depth < MAX_LIST_DEPTH) {
@@ -142,11 +148,10 @@ static void list_folder(struct listing *listing, const char *folder, const char 
     free(entries);
 }
 
-static uint32_t list_files(const char *folder, const char *const *extensions, char **out_sources,
-                           uint32_t capacity)
+static uint32_t list_files(const char *folder, const char *(*extension)(uint32_t),
+                           char **out_sources, uint32_t capacity)
 {
-    struct listing listing = {
-        .extensions = extensions, .sources = out_sources, .capacity = capacity};
+    struct listing listing = {.extension = extension, .sources = out_sources, .capacity = capacity};
     if (folder)
         list_folder(&listing, folder, "", 0);
     return listing.count;
@@ -154,12 +159,12 @@ static uint32_t list_files(const char *folder, const char *const *extensions, ch
 
 uint32_t scene_loader_list(const char *folder, char **out_sources, uint32_t capacity)
 {
-    return list_files(folder, scene_extensions, out_sources, capacity);
+    return list_files(folder, scene_file_extension, out_sources, capacity);
 }
 
 uint32_t scene_loader_list_environments(const char *folder, char **out_names, uint32_t capacity)
 {
-    return list_files(folder, environment_extensions, out_names, capacity);
+    return list_files(folder, environment_extension, out_names, capacity);
 }
 
 static bool is_builtin(const char *source)
@@ -174,11 +179,11 @@ static bool is_builtin(const char *source)
 }
 
 // `what` names the kind of thing in the message.
-static char *resolve(const char *folder, const char *const *extensions, const char *source,
+static char *resolve(const char *folder, const char *(*extension)(uint32_t), const char *source,
                      const char *what, struct error *out_error)
 {
     char *joined = NULL, *path = NULL, *root = NULL;
-    if (folder && source[0] != '/' && ends_with_one(source, extensions) &&
+    if (folder && source[0] != '/' && ends_with_one(source, extension) &&
         asprintf(&joined, "%s/%s", folder, source) > 0) {
         root = realpath(folder, NULL);
         path = realpath(joined, NULL);
@@ -200,11 +205,11 @@ char *scene_loader_resolve(const char *folder, const char *source, struct error 
 {
     if (is_builtin(source))
         return strdup(source);
-    return resolve(folder, scene_extensions, source, "scenes", out_error);
+    return resolve(folder, scene_file_extension, source, "scenes", out_error);
 }
 
 char *scene_loader_resolve_environment(const char *folder, const char *name,
                                        struct error *out_error)
 {
-    return resolve(folder, environment_extensions, name, "environments", out_error);
+    return resolve(folder, environment_extension, name, "environments", out_error);
 }
