@@ -96,9 +96,9 @@ const struct pass debug_view_pass = {
     .name = "debug_view",
     .effects_used = EFFECT_BIT(EFFECT_SINGLE_VIEW_SHADOWS) | EFFECT_BIT(EFFECT_POINT_SHADOWS) |
                     EFFECT_BIT(EFFECT_LIGHT_TILES),
-    .reads = RESOURCE(IDS) | RESOURCE(DEPTH) | RESOURCE(GBUFFER) | RESOURCE(LIGHT_MASKS) |
-             RESOURCE(FRAGMENTS) | RESOURCE(VOXELS) | RESOURCE(VOXEL_RADIANCE) |
-             RESOURCE(IRRADIANCE),
+    .reads = RESOURCE(LIGHTS) | RESOURCE(SHADOW_MAP) | RESOURCE(IDS) | RESOURCE(DEPTH) |
+             RESOURCE(GBUFFER) | RESOURCE(LIGHT_MASKS) | RESOURCE(FRAGMENTS) | RESOURCE(VOXELS) |
+             RESOURCE(VOXEL_RADIANCE) | RESOURCE(IRRADIANCE),
     .writes = RESOURCE(RADIANCE),
     .skip_reason = debug_view_skip_reason,
     .run = debug_view_run,

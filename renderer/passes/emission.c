@@ -22,7 +22,7 @@ static bool emission_run(struct frame *frame, const struct pass *pass, struct er
 
 const struct pass emission_pass = {
     .name = "emission",
-    .reads = RESOURCE(GBUFFER),
+    .reads = RESOURCE(DEPTH) | RESOURCE(GBUFFER),
     .writes = RESOURCE(RADIANCE),
     .skip_reason = emission_skip_reason,
     .run = emission_run,
