@@ -114,7 +114,7 @@ describe('edits', () => {
 
   test('loading the scene anew drops the edits in both browsers', async () => {
     await ours.page.locator('#tab-scene').click();
-    await ours.page.locator('.loader button').click();
+    await ours.page.locator('#panel-scene .loader button').click();
     for (const { page } of [ours, theirs]) {
       await page.locator('[data-light]').waitFor({ state: 'detached' });
       assert.equal(await page.locator('.light-icon').count(), 0);
@@ -128,7 +128,7 @@ describe('edits', () => {
     const { page } = ours;
     const before = await page.evaluate(() => globalThis.voxcast.document.data.epoch);
     await page.locator('#scene-source').selectOption('builtin:material-grid');
-    await page.locator('.loader button').click();
+    await page.locator('#panel-scene .loader button').click();
     await page.waitForFunction((epoch) => globalThis.voxcast.document.data.epoch !== epoch, before);
     await untilStill(page, 1000);
     await page.mouse.click(525, 455);
