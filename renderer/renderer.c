@@ -16,7 +16,6 @@
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/gpu_scene/gpu_scene.h"
-#include "renderer/gpu_scene/bvh.h"
 #include "renderer/frame/view.h"
 #include "voxcast_paths.h"
 

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "shared/work_groups.h"
 #include "shared/display.h"
 
 // As shaders/post/exposure.comp.

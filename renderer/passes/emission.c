@@ -1,6 +1,5 @@
 // Emitted radiance only, for scenes without other light.
 #include "renderer/passes/pass.h"
-#include "renderer/frame/view.h"
 
 static const char *emission_skip_reason(const struct frame *frame)
 {

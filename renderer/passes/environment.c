@@ -1,7 +1,6 @@
 // Environment as background and ambient light. Where it runs, it is the first pass to write
 // radiance.
 #include "renderer/passes/pass.h"
-#include "renderer/frame/view.h"
 
 static const char *environment_skip_reason(const struct frame *frame)
 {

@@ -1,6 +1,5 @@
 // Turns visibility ids into the G-buffer.
 #include "renderer/passes/pass.h"
-#include "renderer/frame/view.h"
 
 static const char *gbuffer_skip_reason(const struct frame *frame)
 {

@@ -1,6 +1,5 @@
 // Culls lights of limited range per screen tile.
 #include "renderer/passes/pass.h"
-#include "renderer/frame/view.h"
 
 static const char *light_tiles_skip_reason(const struct frame *frame)
 {

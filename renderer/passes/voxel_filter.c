@@ -2,7 +2,6 @@
 // level.
 #include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/frame/view.h"
 
 static const char *voxel_filter_skip_reason(const struct frame *frame)
 {

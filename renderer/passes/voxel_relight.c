@@ -3,7 +3,6 @@
 
 #include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/frame/view.h"
 
 static const char *voxel_relight_skip_reason(const struct frame *frame)
 {

@@ -1,7 +1,6 @@
 // Voxelizes the triangles of newly covered regions.
 #include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
-#include "renderer/frame/view.h"
 
 // Groups along x where one dimension cannot hold all groups of a dispatch.
 #define ROW_GROUPS 4096u

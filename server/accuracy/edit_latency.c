@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "server/accuracy/bench_run.h"
 #include "server/accuracy/converged_frames.h"
 
 #define FIRST_FRACTION   0.01

@@ -11,7 +11,6 @@
 #include "renderer/metrics/image_metrics.h"
 #include "server/accuracy/accuracy.h"
 #include "server/tool/cli.h"
-#include "server/tool/cli_bench.h"
 #include "server/tool/shot_options.h"
 #include "server/tool/tool_options.h"
 

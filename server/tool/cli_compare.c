@@ -11,7 +11,6 @@
 #include "server/accuracy/bench_run.h"
 #include "server/accuracy/picture_file.h"
 #include "server/tool/cli.h"
-#include "server/tool/cli_bench.h"
 #include "server/tool/tool_options.h"
 
 static const char usage[] =

@@ -14,7 +14,6 @@
 #include "server/accuracy/converged_frames.h"
 #include "server/accuracy/picture_file.h"
 #include "server/accuracy/shot.h"
-#include "server/tool/cli.h"
 #include "support_gpu.h"
 
 #define WIDTH  64

@@ -10,7 +10,6 @@
 #include <cmocka.h>
 
 #include "renderer/gi/gi.h"
-#include "renderer/import/builtin/builtin.h"
 #include "support_gi.h"
 #include "support_gi_scenes.h"
 

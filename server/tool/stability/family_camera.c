@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "renderer/camera.h"
-#include "renderer/import/builtin/builtin.h"
 #include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"
 

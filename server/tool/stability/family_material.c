@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/import/builtin/builtin.h"
 #include "renderer/image/image.h"
 #include "renderer/metrics/picture.h"
 #include "server/tool/stability/stage.h"

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/import/builtin/builtin.h"
 #include "server/document/edit.h"
 #include "server/tool/stability/hostile.h"
 #include "server/tool/stability/mutation.h"
