@@ -21,6 +21,7 @@ struct gpu_program {
     char defines[MAX_DEFINES];
     bool stale;
     struct gpu_program_bindings bindings;
+    bool bindings_taken; // since the program was built
     uint32_t file_count;
     char (*files)[SHADER_MAX_PATH];
 };
@@ -128,10 +129,14 @@ static void find_bindings(GLuint name, struct gpu_program_bindings *bindings)
     find_units(name, bindings);
 }
 
-void gpu_program_get_bindings(const struct gpu_program *program,
-                              struct gpu_program_bindings *out_bindings)
+bool gpu_program_take_bindings(const struct gpu_program *program,
+                               struct gpu_program_bindings *out_bindings)
 {
+    struct gpu_program *own = (struct gpu_program *)program; // all of them are this module's
+    bool taken = own->bindings_taken;
+    own->bindings_taken = true;
     *out_bindings = program->bindings;
+    return !taken;
 }
 
 // Builds a GL program object; 0 on failure. Replaces the program's list of files in either case.
@@ -170,6 +175,7 @@ static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *
         } else {
             glObjectLabel(GL_PROGRAM, name, -1, program->path);
             find_bindings(name, &program->bindings);
+            program->bindings_taken = false;
         }
     }
     for (uint32_t i = 0; i < count; i++)

@@ -27,8 +27,9 @@ struct gpu_program_bindings {
     uint32_t images;  // bits of the image units
 };
 
-void gpu_program_get_bindings(const struct gpu_program *program,
-                              struct gpu_program_bindings *out_bindings);
+// False where they have been asked for since the program was built: nothing has changed.
+bool gpu_program_take_bindings(const struct gpu_program *program,
+                               struct gpu_program_bindings *out_bindings);
 
 // The offset in bytes of a member of a uniform or storage block, such as "frame.near_m" or
 // "lights[0].type", as the driver lays it out. False if the program has none of this name.

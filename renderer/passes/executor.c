@@ -36,7 +36,8 @@ void pass_check_bindings(const struct frame *frame, const struct pass *pass,
                          const struct gpu_program *program)
 {
     struct gpu_program_bindings bound;
-    gpu_program_get_bindings(program, &bound);
+    if (!gpu_program_take_bindings(program, &bound))
+        return;
     for (uint32_t i = 0; i < RESOURCE_COUNT; i++) {
         const struct resource_row *row = &resource_rows[i];
         bool used = (bound.storage & row->storage) || (bound.units & row->units) ||
