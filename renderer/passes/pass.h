@@ -48,11 +48,14 @@ extern const struct pass *const all_passes[PASS_COUNT];
 // Runs the needed passes in order and times each. False with a message if one fails.
 bool passes_execute(struct frame *frame, struct error *out_error);
 
-// Whether every resource is written before it is read, in the order of all_passes. On failure the
-// message names the pass and the resource.
+// Compares what a program binds, as the driver sees it, with what its pass declares; once per build
+// of the program. What is undeclared is logged and counts as a GL error, so that declarations
+// cannot drift from the shaders.
 void pass_check_bindings(const struct frame *frame, const struct pass *pass,
                          const struct gpu_program *program);
 
+// Whether every resource is written before it is read, in the order of all_passes. On failure the
+// message names the pass and the resource.
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error);
 
 // The shader's permutation for the frame's effects and `extra` defines ("NAME 1
