@@ -58,8 +58,7 @@ void pass_check_bindings(const struct frame *frame, const struct pass *pass,
 // message names the pass and the resource.
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error);
 
-// The shader's permutation for the frame's effects and `extra` defines ("NAME 1
-// " lines).
+// The shader's permutation for the frame's effects and `extra` defines ("NAME 1" lines).
 const struct gpu_program *pass_program(const struct frame *frame, const struct pass *pass,
                                        const char *shader, const char *extra,
                                        struct error *out_error);

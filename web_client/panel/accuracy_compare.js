@@ -3,7 +3,7 @@ import { element } from '../ui/element.js';
 
 const MODES = [
   { name: 'none', title: 'Picture alone' },
-  { name: 'split', title: 'Split with the reference' },
+  { name: 'split', title: 'Split' },
   { name: 'error', title: 'Error map' },
 ];
 
