@@ -27,9 +27,7 @@ struct checked {
     const char *name;
     enum resource resource;
     const struct gpu_buffer *buffer; // NULL with `texture`
-    uint32_t record_words;
-    uint32_t floats, low_halves,
-        high_halves; // words of a record; bit 31 stands for all words from 31 on
+    struct resource_floats floats;
     const struct gpu_texture *texture;
     enum texture_kind kind;
 };
@@ -61,8 +59,7 @@ static void add_buffer(struct checked_list *list, const char *name, enum resourc
         return;
     struct checked *item = add(list, name, resource);
     item->buffer = buffer;
-    item->record_words = 1;
-    item->floats = EVERY_WORD;
+    item->floats = (struct resource_floats){.record_words = 1, .floats = EVERY_WORD};
 }
 
 static void add_texture(struct checked_list *list, const char *name, enum resource resource,
@@ -82,25 +79,24 @@ static void add_blocks(struct checked_list *list, const char *name, const struct
     if (!buffer)
         return;
     add_buffer(list, name, NOT_WRITTEN, buffer);
-    list->items[list->count - 1].record_words = words;
-    list->items[list->count - 1].floats = floats;
+    list->items[list->count - 1].floats =
+        (struct resource_floats){.record_words = words, .floats = floats};
 }
 
 static void add_view(struct checked_list *list, const struct view *view)
 {
+    const struct frame_inputs inputs = {.params = &view->history.params};
     add_texture(list, "depth", RESOURCE_DEPTH, view->depth, TEXTURE_PLAIN);
-    if (view->gbuffer) {
-        // Everything else is integers and fractions of them. The emission's exponent sits where a
-        // half has its own.
-        struct checked *item = add(list, "gbuffer", RESOURCE_GBUFFER);
-        item->buffer = view->gbuffer;
-        item->record_words = 8;
-        item->low_halves = 1u << 7;
+    for (int i = 0; i < RESOURCE_COUNT; i++) {
+        if (!view->buffers[i])
+            continue;
+        struct resource_floats floats = resource_rows[i].floats(&inputs);
+        if (floats.record_words == 0)
+            continue;
+        struct checked *item = add(list, resource_rows[i].name, (enum resource)i);
+        item->buffer = view->buffers[i];
+        item->floats = floats;
     }
-    add_buffer(list, "radiance", RESOURCE_RADIANCE, view->radiance);
-    add_buffer(list, "accumulation", RESOURCE_ACCUMULATION, view->accumulation);
-    if (view->last_params.output == FRAME_OUTPUT_LINEAR)
-        add_buffer(list, "output", RESOURCE_OUTPUT, view->output);
     add_buffer(list, "shadow_views", NOT_WRITTEN, view->shadow_views);
 }
 
@@ -109,10 +105,13 @@ static void add_volume(struct checked_list *list, const struct voxel_volume *vol
     add_texture(list, "voxel_radiance", RESOURCE_VOXEL_RADIANCE, volume->radiance, TEXTURE_VOLUME);
     struct checked *faces = add(list, "irradiance_cache", RESOURCE_IRRADIANCE);
     faces->buffer = volume->faces;
-    faces->record_words = FACE_WORDS + volume->params.cache_cones;
-    faces->low_halves = faces->high_halves =
-        3u << FACE_LIGHT | 3u << FACE_DIRECT | 3u << FACE_SHOWN;
-    faces->low_halves |= ~((1u << FACE_WORDS) - 1); // hit distances of the cones
+    uint32_t light = 3u << FACE_LIGHT | 3u << FACE_DIRECT | 3u << FACE_SHOWN;
+    uint32_t hit_distances = ~((1u << FACE_WORDS) - 1); // of the cones
+    faces->floats = (struct resource_floats){
+        .record_words = FACE_WORDS + volume->params.cache_cones,
+        .low_halves = light | hit_distances,
+        .high_halves = light,
+    };
 }
 
 static void add_scene(struct checked_list *list, const struct gpu_scene *gpu_scene)
@@ -132,7 +131,8 @@ static bool is_written(const struct view *view, enum resource resource)
     if (resource == NOT_WRITTEN)
         return true;
     for (uint32_t i = 0; i < PASS_COUNT; i++)
-        if (!view->pass_skip_reasons[i] && (all_passes[i]->writes & (1u << resource)))
+        if (frame_plan_runs(&view->plan, (enum pass_id)i) &&
+            (all_passes[i]->writes & (1u << resource)))
             return true;
     return false;
 }
@@ -151,8 +151,9 @@ static bool dispatch(const struct finite_check *check, const struct checked *ite
         size_t count = item->texture ? gpu_texture_texel_count(item->texture, level)
                                      : gpu_buffer_size_bytes(item->buffer) / sizeof(uint32_t);
         size_t groups = (count + LINEAR_GROUP - 1) / LINEAR_GROUP;
-        const uint32_t head[8] = {(uint32_t)count, item->record_words, result,           level,
-                                  item->floats,    item->low_halves,   item->high_halves};
+        const uint32_t head[8] = {
+            (uint32_t)count,         item->floats.record_words, result, level, item->floats.floats,
+            item->floats.low_halves, item->floats.high_halves};
         gpu_buffer_write(block, 0, sizeof(head), head);
         gpu_bind_storage(check->gpu, BIND_CHECK, block);
         gpu_bind_storage(check->gpu, BIND_CHECKED, item->buffer);

@@ -148,55 +148,46 @@ void renderer_view_destroy(struct renderer *renderer, struct view **view)
     gi_release_unused(&renderer->gi, renderer->views, renderer->view_count);
 }
 
-static bool params_equal(const struct frame_params *a, const struct frame_params *b)
+// Finds what the plan depends on and only the GPU's scene and the method know, and makes it.
+static bool plan_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)
 {
-    return memcmp(&a->camera, &b->camera, sizeof(a->camera)) == 0 && a->width == b->width &&
-           a->height == b->height && a->quality == b->quality && a->debug_view == b->debug_view &&
-           a->debug_level == b->debug_level && a->debug_face == b->debug_face &&
-           a->output == b->output && a->own_voxels == b->own_voxels &&
-           render_settings_changes(&a->settings, &b->settings) == INVALIDATES_NOTHING;
-}
-
-static bool same_surfaces(const struct view *view, const struct frame_params *params,
-                          const struct scene_revisions *revisions)
-{
-    const struct frame_params *last = &view->last_params;
-    const struct scene_revisions *seen = &view->last_revisions;
-    return memcmp(&last->camera, &params->camera, sizeof(last->camera)) == 0 &&
-           last->width == params->width && last->height == params->height &&
-           last->quality == params->quality &&
-           !(render_settings_changes(&last->settings, &params->settings) & INVALIDATES_SURFACES) &&
-           seen->geometry == revisions->geometry && seen->transforms == revisions->transforms &&
-           seen->materials == revisions->materials;
+    struct view *view = frame->view;
+    struct frame_inputs *inputs = &frame->inputs;
+    inputs->scene = gpu_scene_get_facts(frame->gpu_scene);
+    frame_plan_make(&view->plan, inputs); // effects, for what comes next
+    if (!gi_begin_frame(&renderer->gi, frame, out_error))
+        return false;
+    gi_release_unused(&renderer->gi, renderer->views, renderer->view_count);
+    inputs->gi = frame->volume ? &frame->gi : NULL;
+    if (!view_reserve(view, frame->gpu_scene, view->plan.quality.shadow_cascades))
+        return error_set(out_error, "shadow maps and draws do not fit into GPU memory");
+    shadow_map_fit_cascades(frame);
+    inputs->shadows_stale = shadow_map_is_stale(frame);
+    if (view->plan.surfaces_changed) {
+        mat4 clip_from_world;
+        frame_clip_from_world(frame, clip_from_world);
+        draw_list_fill(&view->draws, frame->gpu_scene, clip_from_world, frame->camera.eye);
+    }
+    inputs->transparent_in_view = draw_list_has(&view->draws, DRAW_TRANSPARENT);
+    inputs->target_width = view->width;
+    frame_plan_make(&view->plan, inputs);
+    return true;
 }
 
 static bool draw_frame(struct renderer *renderer, struct frame *frame, struct error *out_error)
 {
     struct view *view = frame->view;
-    if (!gi_begin_frame(&renderer->gi, frame, out_error))
+    if (!plan_frame(renderer, frame, out_error))
         return false;
-    gi_release_unused(&renderer->gi, renderer->views, renderer->view_count);
-    uint32_t width_before = view->width;
-    if (!view_prepare(view, frame))
+    if (!view_prepare(view, &frame->inputs, frame->plan))
         return error_set(out_error, "a view of %u x %u pixels does not fit into GPU memory",
                          frame->params->width, frame->params->height);
-    if (view->width != width_before) {
-        frame->visibility_changed = true;
-        frame->unchanged = false;
-    }
-    if (!gi_plan_frame(frame, out_error))
-        return false;
-    frame->width = view->width;
-    frame->height = view->height;
-    frame->tiles_x = (view->width + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
-    frame->tiles_y = (view->height + LIGHT_TILE_EDGE - 1) / LIGHT_TILE_EDGE;
+    if (frame->plan->needs_bvh && !gpu_scene_need_tree(frame->gpu_scene))
+        return error_set(out_error, "a tree of the scene's triangles does not fit into memory");
     struct frame_block block;
     frame_block_fill(frame, &block);
-    shadow_map_fit_cascades(frame);
     shadow_map_relate_cascades(frame, &block);
     gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
-    if (frame->visibility_changed)
-        draw_list_fill(&view->draws, frame->gpu_scene, block.clip_from_world, frame->camera.eye);
     gpu_scene_bind(frame->gpu_scene);
     view_bind(view);
     gi_bind_frame(frame);
@@ -246,11 +237,8 @@ static void queue_readback(const struct frame *frame, double started_ms)
         slot->result.reference_noise =
             isfinite(live->progress.noise) ? (float)live->progress.noise : 0.0f;
     }
-    view->surfaces_stale = frame->reference_picture != NULL;
-    view->last_convergence = slot->result.convergence;
     slot->volume_serial = view->volume_serial;
-    slot->generation =
-        frame->volume && frame->light_work.trace ? frame->volume->light.generation : 0;
+    slot->generation = frame->volume && frame->gi.work.trace ? frame->volume->light.generation : 0;
     view->ring_next = (view->ring_next + 1) % RENDERER_FRAMES_IN_RING;
     view->ring_count++;
 }
@@ -278,10 +266,12 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         return RENDER_BUSY;
     struct gpu_scene *gpu_scene = renderer->gpu_scene;
     const struct scene_revisions revisions = renderer->scene->revisions;
-    bool same_scene = view->drawn && view->last_scene == renderer->gi.scene_number;
-    bool same = same_scene && params_equal(&view->last_params, params) &&
-                memcmp(&view->last_revisions, &revisions, sizeof(revisions)) == 0;
-    if (same && view->last_convergence >= 1.0f)
+    const struct frame_inputs inputs = {.params = params,
+                                        .revisions = &revisions,
+                                        .scene_number = renderer->gi.scene_number,
+                                        .history = &view->history};
+    bool same = frame_plan_changes(&inputs) == INVALIDATES_NOTHING;
+    if (same && view->history.convergence >= 1.0f)
         return RENDER_UNCHANGED;
 
     struct frame frame = {
@@ -290,10 +280,8 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .view = view,
         .params = params,
         .camera = params->camera,
-        .quality = &quality_levels[params->quality],
-        .unchanged = same,
-        .visibility_changed =
-            !same_scene || view->surfaces_stale || !same_surfaces(view, params, &revisions),
+        .inputs = inputs,
+        .plan = &view->plan,
     };
     gpu_scene_from_world(gpu_scene, params->camera.eye, frame.camera.eye);
     gpu_scene_from_world(gpu_scene, params->camera.target, frame.camera.target);
@@ -302,23 +290,28 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         return readiness == GI_PENDING ? RENDER_PENDING : RENDER_UNCHANGED;
     if (!gpu_scene_update(gpu_scene, out_error))
         return RENDER_FAILED;
-    effects_plan(&frame.plan, gpu_scene, params, frame.gi_capabilities);
-    view->last_plan = frame.plan; // skip reasons may point into the plan
     if (!draw_frame(renderer, &frame, out_error)) {
-        view->drawn = false;
+        view->history.drawn = false;
         return RENDER_FAILED;
     }
     queue_readback(&frame, started_ms);
-    view->drawn = true;
-    view->last_params = *params;
-    view->last_revisions = revisions;
-    view->last_scene = renderer->gi.scene_number;
+    view->history = (struct frame_history){
+        .drawn = true,
+        .surfaces_stale = frame.reference_picture != NULL,
+        .params = *params,
+        .revisions = revisions,
+        .scene_number = renderer->gi.scene_number,
+        .convergence = gi_convergence(&frame),
+        .accumulation = view->plan.accumulation_after,
+        .shown_light = view->plan.shown_light_after,
+        .accumulate_only_count = view->plan.accumulate_only_count_after,
+    };
     return RENDER_DRAWN;
 }
 
 void renderer_view_invalidate(struct view *view)
 {
-    view->drawn = false;
+    view->history.drawn = false;
 }
 
 // Hands the counters that the frame read back to its volume.
@@ -334,11 +327,8 @@ static void collect_light(struct renderer *renderer, struct view *view,
     if (slot->generation == 0)
         return;
     gpu_timer_poll(view->timer);
-    double trace_ms = 0.0;
-    for (uint32_t i = 0; i < PASS_COUNT; i++)
-        if (all_passes[i] == &irradiance_cache_pass)
-            trace_ms = gpu_timer_get_ms(view->timer, i);
-    voxel_light_collect(volume, slot->generation, &report, trace_ms);
+    voxel_light_collect(volume, slot->generation, &report,
+                        gpu_timer_get_ms(view->timer, PASS_IRRADIANCE_CACHE));
 }
 
 bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wait,
@@ -354,7 +344,7 @@ bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wa
     struct frame_params shape = {
         .width = slot->result.width, .height = slot->result.height, .output = slot->result.output};
     size_t offsets[3];
-    size_t size_bytes = view_output_layout(&shape, offsets, slot->result.row_pitch_bytes);
+    size_t size_bytes = frame_plan_output_layout(&shape, offsets, slot->result.row_pitch_bytes);
     const uint8_t *bytes = gpu_buffer_mapping(slot->pixels);
     float found;
     memcpy(&found, bytes + size_bytes, sizeof(found));
@@ -379,11 +369,16 @@ void renderer_view_release(struct renderer *renderer, struct view *view)
     view->ring_count--;
 }
 
-static void add_memory(struct frame_statistics *statistics, const struct gpu *gpu, const char *name,
-                       const char *prefix)
+static void list_memory(const struct gpu *gpu, struct frame_statistics *statistics)
 {
-    statistics->memory[statistics->memory_count++] =
-        (struct memory_statistics){.name = name, .bytes = gpu_memory_bytes(gpu, prefix)};
+    struct gpu_memory_group groups[FRAME_MAX_MEMORY_GROUPS];
+    statistics->memory_count = gpu_memory_groups(gpu, groups, FRAME_MAX_MEMORY_GROUPS);
+    for (uint32_t i = 0; i < statistics->memory_count; i++) {
+        struct memory_statistics *memory = &statistics->memory[i];
+        _Static_assert(sizeof(memory->name) == sizeof(groups[i].name), "they hold the same");
+        memcpy(memory->name, groups[i].name, sizeof(memory->name));
+        memory->bytes = groups[i].bytes;
+    }
 }
 
 void renderer_view_get_statistics(const struct renderer *renderer, const struct view *view,
@@ -398,27 +393,21 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
                                             .render_height = view->height};
     gpu_timer_poll(view->timer);
     for (uint32_t i = 0; i < PASS_COUNT; i++) {
-        bool ran = view->drawn && !view->pass_skip_reasons[i];
+        bool ran = view->history.drawn && frame_plan_runs(&view->plan, (enum pass_id)i);
         statistics->passes[i] = (struct pass_statistics){
-            .name = all_passes[i]->name,
+            .name = pass_name((enum pass_id)i),
             .ran = ran,
             .time_ms = ran ? gpu_timer_get_ms(view->timer, i) : 0.0,
-            .reason = view->pass_skip_reasons[i] ? view->pass_skip_reasons[i] : "",
+            .reason = view->plan.skip_reasons[i] ? view->plan.skip_reasons[i] : "",
         };
     }
     for (uint32_t i = 0; i < EFFECT_COUNT; i++) {
         struct effect_statistics *effect = &statistics->effects[i];
         effect->name = effect_name((enum effect)i);
-        effect->on = (view->last_plan.bits & EFFECT_BIT(i)) != 0;
-        memcpy(effect->reason, view->last_plan.reasons[i], sizeof(effect->reason));
+        effect->on = (view->plan.effects.bits & EFFECT_BIT(i)) != 0;
+        memcpy(effect->reason, view->plan.effects.reasons[i], sizeof(effect->reason));
     }
-    static const char *const groups[][2] = {
-        {"geometry", "geometry"},  {"materials", "materials"},    {"textures", "textures"},
-        {"lights", "lights"},      {"shadow_maps", "shadow_map"}, {"environment", "environment"},
-        {"view_targets", "view."}, {"readback", "readback"},      {"gi", "gi."},
-    };
-    for (size_t i = 0; i < sizeof(groups) / sizeof(groups[0]); i++)
-        add_memory(statistics, renderer->gpu, groups[i][0], groups[i][1]);
+    list_memory(renderer->gpu, statistics);
     const struct voxel_volume *volume = gi_find(&renderer->gi, view->volume_serial);
     const struct scene_rejects none = {0};
     const struct scene_rejects *rejects = renderer->scene ? &renderer->scene->rejects : &none;

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "renderer/hash.h"
+
 const struct quality_level quality_levels[QUALITY_COUNT] = {
     [QUALITY_DRAFT] = {.resolution_scale = 0.5f,
                        .texture_anisotropy = 1.0f,
@@ -13,7 +15,8 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                        .ray_step = 2,
                        .ray_pictures = 16,
                        .specular_roughness = 0.2f,
-                       .specular_reflectance = 0.2f},
+                       .specular_reflectance = 0.2f,
+                       .shared_specular_cones = true},
     [QUALITY_INTERACTIVE] = {.resolution_scale = 1.0f,
                              .texture_anisotropy = 1.0f,
                              .shadow_taps = 4,
@@ -25,7 +28,8 @@ const struct quality_level quality_levels[QUALITY_COUNT] = {
                              .ray_step = 1,
                              .ray_pictures = 16,
                              .specular_roughness = 0.35f,
-                             .specular_reflectance = 0.2f},
+                             .specular_reflectance = 0.2f,
+                             .shared_specular_cones = true},
     [QUALITY_HIGH] = {.resolution_scale = 1.0f,
                       .texture_anisotropy = 4.0f,
                       .shadow_taps = 16,
@@ -72,16 +76,9 @@ uint32_t render_settings_changes(const struct render_settings *a, const struct r
     return changes;
 }
 
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        hash = (hash ^ ((const uint8_t *)bytes)[i]) * 1099511628211ull;
-    return hash;
-}
-
 uint64_t render_settings_hash(const struct render_settings *settings, uint32_t parts)
 {
-    uint64_t hash = 14695981039346656037ull;
+    uint64_t hash = HASH_START;
 #define PARAMETER(record, name, type, range, unit, initial, handling, redraw, ...)                 \
     if (parts & INVALIDATES_##redraw)                                                              \
         hash = hash_bytes(hash, &settings->name, sizeof(settings->name));

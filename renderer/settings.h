@@ -40,6 +40,7 @@ struct quality_level {
     bool cone_shadows;          // soft shadows by cones where rays do not trace them
     float specular_roughness;   // rougher surfaces take specular light from the cached irradiance,
     float specular_reflectance; // and so do those with a lower reflectance at normal incidence
+    bool shared_specular_cones; // one for four similar pixels
 };
 
 extern const struct quality_level quality_levels[QUALITY_COUNT];

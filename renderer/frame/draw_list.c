@@ -15,9 +15,9 @@ bool draw_list_reserve(struct draw_list *list, const struct gpu_scene *gpu_scene
     list->scratch_commands = malloc(wanted * sizeof(*list->scratch_commands));
     list->scratch_records = malloc(wanted * sizeof(*list->scratch_records));
     if (!list->scratch_commands || !list->scratch_records ||
-        !gpu_buffer_ensure(gpu_scene->gpu, &list->commands, "view.draws", GPU_BUFFER_STATIC,
+        !gpu_buffer_ensure(gpu_scene->gpu, &list->commands, "view_targets.draws", GPU_BUFFER_STATIC,
                            wanted * sizeof(*list->scratch_commands)) ||
-        !gpu_buffer_ensure(gpu_scene->gpu, &list->records, "view.draws", GPU_BUFFER_STATIC,
+        !gpu_buffer_ensure(gpu_scene->gpu, &list->records, "view_targets.draws", GPU_BUFFER_STATIC,
                            wanted * sizeof(*list->scratch_records)))
         return false;
     list->capacity = wanted;

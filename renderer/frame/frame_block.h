@@ -6,6 +6,9 @@
 
 struct frame;
 
+// From world space, relative to the GPU scene's origin, to clip space with reversed Z.
+void frame_clip_from_world(const struct frame *frame, mat4 out_clip_from_world);
+
 // Fills everything but the cascades, which shadow_map_relate_cascades() adds.
 void frame_block_fill(const struct frame *frame, struct frame_block *block);
 

@@ -5,8 +5,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define RENDERER_MAX_PASSES  32u
-#define RENDERER_MAX_EFFECTS 32u
+#define RENDERER_MAX_PASSES     32u
+#define RENDERER_MAX_EFFECTS    32u
+#define FRAME_MAX_MEMORY_GROUPS 16u
 
 struct pass_statistics {
     const char *name;
@@ -22,7 +23,7 @@ struct effect_statistics {
 };
 
 struct memory_statistics {
-    const char *name; // e.g. "textures", "geometry", "shadow_maps", "view_targets"
+    char name[32]; // e.g. "textures", "geometry", "shadow_maps", "view_targets"
     uint64_t bytes;
 };
 
@@ -38,7 +39,7 @@ struct frame_statistics {
     uint32_t effect_count;
     struct effect_statistics effects[RENDERER_MAX_EFFECTS];
     uint32_t memory_count;
-    struct memory_statistics memory[16];
+    struct memory_statistics memory[FRAME_MAX_MEMORY_GROUPS];
     uint32_t reject_count;
     struct reject_statistics rejects[8];
     double frame_time_ms; // of the newest collected frame

@@ -3,8 +3,9 @@
 #define VOXCAST_RENDERER_FRAME_VIEW_H
 
 #include "renderer/frame/draw_list.h"
-#include "renderer/frame/effects.h"
 #include "renderer/frame/frame_pixels.h"
+#include "renderer/frame/frame_plan.h"
+#include "renderer/frame/resource.h"
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu/timer.h"
@@ -36,15 +37,9 @@ struct view {
     struct gpu_buffer *frame_block;
     struct gpu_texture *ids;
     struct gpu_texture *depth;
-    struct gpu_framebuffer *framebuffer;      // ids and depth
-    struct gpu_framebuffer *list_framebuffer; // depth alone, for transparent lists
-    struct gpu_buffer *gbuffer;
-    struct gpu_buffer *radiance;
-    struct gpu_buffer *light_masks;
-    struct gpu_buffer *fragments;
-    struct gpu_buffer *transparent_tiles;
-    struct gpu_buffer *exposure;
-    struct gpu_buffer *output;
+    struct gpu_framebuffer *framebuffer;        // ids and depth
+    struct gpu_framebuffer *list_framebuffer;   // depth alone, for transparent lists
+    struct gpu_buffer *buffers[RESOURCE_COUNT]; // of the rows that are the view's own
     struct draw_list draws;
     struct draw_list shadow_draws;
 
@@ -67,44 +62,27 @@ struct view {
 
     uint64_t volume_serial; // volume of the newest frame; 0 for none
 
-    struct gpu_buffer *accumulation; // sums of samples while nothing moves
-    uint32_t accumulated_samples;    // samples in those sums
-    uint64_t shown_light;            // light version of the volume in the last image
-    uint32_t accumulate_only_count;  // frames since the last image
-    uint64_t accumulation_key;       // hash of everything that invalidates the accumulation
-    struct gpu_buffer
-        *glossy_tiles; // dispatch arguments and numbers of tiles with traced reflections
-
     struct live_reference reference;
 
-    // Inputs of the newest drawn frame.
-    bool drawn;
-    bool surfaces_stale; // ids, depth and G-buffer are of an earlier frame
-    struct frame_params last_params;
-    struct scene_revisions last_revisions;
-    uint64_t last_scene;
-    struct effect_plan last_plan;
-    const char *pass_skip_reasons[RENDERER_MAX_PASSES];
+    struct frame_plan plan; // of the newest frame
+    struct frame_history history;
     double last_frame_ms;
     float last_exposure;
-    float last_convergence;
 };
 
 struct view *view_create(struct gpu *gpu);
 void view_destroy(struct view **view);
 
-struct frame;
+// Reserves the sun's cascades and space for draws. False when memory runs out.
+bool view_reserve(struct view *view, struct gpu_scene *gpu_scene, uint32_t cascade_count);
 
-// Fits the targets to the frame's size, effects and final gather. False when GPU memory runs out.
-bool view_prepare(struct view *view, const struct frame *frame);
-
-// Bytes of one output image; offsets and row pitches of its planes.
-size_t view_output_layout(const struct frame_params *params, size_t out_offsets[3],
-                          uint32_t out_pitches[3]);
+// Fits the targets to the plan. False when GPU memory runs out.
+bool view_prepare(struct view *view, const struct frame_inputs *in, const struct frame_plan *plan);
 
 // Returns the view's cascades to the shadow map that they came from. Call before that is destroyed.
 void view_release_cascades(struct view *view);
 
+// Binds the uniforms and textures; the executor binds the buffers that a pass declares.
 void view_bind(const struct view *view);
 
 #endif

@@ -41,7 +41,7 @@ enum gi_readiness gi_prepare_frame(struct gi *gi, struct frame *frame, bool same
     for (uint32_t i = 0; i < GI_METHOD_COUNT; i++)
         if (gi_methods[i] != method && gi_methods[i]->leave)
             gi_methods[i]->leave(gi, frame);
-    frame->gi_capabilities = method->capabilities;
+    frame->inputs.gi_capabilities = method->capabilities;
     return method->prepare ? method->prepare(gi, frame, same) : GI_READY;
 }
 
@@ -49,17 +49,12 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 {
     const struct gi_method_hooks *method = method_of(frame);
     frame->volume = NULL;
+    frame->gi = (struct gi_state){0};
     frame->view->volume_serial = 0;
-    frame->gather = frame_gather_mode(frame);
-    return !method->begin || method->begin(gi, frame, out_error);
-}
-
-bool gi_plan_frame(struct frame *frame, struct error *out_error)
-{
-    const struct gi_method_hooks *method = method_of(frame);
-    if (!method->plan)
-        frame->view->accumulated_samples = 0;
-    return !method->plan || method->plan(frame, out_error);
+    if (method->begin && !method->begin(gi, frame, out_error))
+        return false;
+    frame->view->volume_serial = frame->gi.serial;
+    return true;
 }
 
 void gi_bind_frame(const struct frame *frame)

@@ -41,7 +41,6 @@ void gi_set_scene(struct gi *gi, struct scene *scene);
 // the method can do.
 enum gi_readiness gi_prepare_frame(struct gi *gi, struct frame *frame, bool same);
 bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error);
-bool gi_plan_frame(struct frame *frame, struct error *out_error);
 void gi_bind_frame(const struct frame *frame);
 float gi_convergence(const struct frame *frame);
 

@@ -4,7 +4,7 @@
 #define VOXCAST_RENDERER_GI_GI_METHOD_H
 
 #include "renderer/error.h"
-#include "renderer/frame/effects.h"
+#include "renderer/settings.h"
 
 struct frame;
 struct gi;
@@ -23,14 +23,11 @@ struct gi_method_hooks {
     // `same`: parameters and document are those of the frame before.
     enum gi_readiness (*prepare)(struct gi *gi, struct frame *frame, bool same);
 
-    // Finds or creates what the method keeps and plans this frame's work on it, once the effects
-    // are planned. False with a message when memory runs out.
+    // Finds or creates what the method keeps, plans this frame's work on it, and tells the frame of
+    // both (frame.gi), once the effects are planned. False with a message when memory runs out.
     bool (*begin)(struct gi *gi, struct frame *frame, struct error *out_error);
 
-    // Plans the final gather, once the frame's size is known. False likewise.
-    bool (*plan)(struct frame *frame, struct error *out_error);
-
-    // Binds what its passes read and write.
+    // Binds what its passes read and write, once everything is planned.
     void (*bind)(const struct frame *frame);
 
     // 0 to 1: how far the frame that has been drawn has come. NULL: 1.

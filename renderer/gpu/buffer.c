@@ -18,7 +18,7 @@ struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gp
     struct gpu_buffer *buffer = calloc(1, sizeof(*buffer));
     if (!buffer)
         return NULL;
-    buffer->size_bytes = size_bytes < 16 ? 16 : size_bytes;
+    buffer->size_bytes = size_bytes < GPU_BUFFER_MIN_BYTES ? GPU_BUFFER_MIN_BYTES : size_bytes;
     gpu_account(gpu, &buffer->allocation, label, buffer->size_bytes);
     glCreateBuffers(1, &buffer->name);
     GLbitfield flags = GL_DYNAMIC_STORAGE_BIT;

@@ -9,9 +9,11 @@ enum gpu_buffer_kind {
     GPU_BUFFER_READBACK, // mapped for reading throughout its life
 };
 
-// `label` becomes the GL object label and is counted by gpu_memory_bytes(). Contents start as
-// `data`, or zero. A size of 0 is raised to 16 bytes, so that the buffer can be bound. NULL when GL
-// runs out of memory.
+// Smaller sizes are raised to this, so that the buffer can be bound.
+#define GPU_BUFFER_MIN_BYTES 16u
+
+// `label` becomes the GL object label; see gpu_memory_groups(). Contents start as `data`, or zero.
+// NULL when GL runs out of memory.
 struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gpu_buffer_kind kind,
                                      size_t size_bytes, const void *data);
 void gpu_buffer_destroy(struct gpu_buffer **buffer);

@@ -156,14 +156,25 @@ void gpu_unaccount(struct gpu_allocation *allocation)
         allocation->next->link = allocation->link;
 }
 
-uint64_t gpu_memory_bytes(const struct gpu *gpu, const char *prefix)
+uint32_t gpu_memory_groups(const struct gpu *gpu, struct gpu_memory_group *out_groups,
+                           uint32_t capacity)
 {
-    uint64_t bytes = 0;
-    size_t length = strlen(prefix);
-    for (const struct gpu_allocation *it = gpu->allocations; it; it = it->next)
-        if (strncmp(it->label, prefix, length) == 0)
-            bytes += it->bytes;
-    return bytes;
+    uint32_t count = 0;
+    for (const struct gpu_allocation *it = gpu->allocations; it; it = it->next) {
+        struct gpu_memory_group group = {.bytes = it->bytes};
+        snprintf(group.name, sizeof(group.name), "%.*s", (int)strcspn(it->label, "."), it->label);
+        uint32_t at = 0;
+        while (at < count && strcmp(out_groups[at].name, group.name) < 0)
+            at++;
+        if (at < count && strcmp(out_groups[at].name, group.name) == 0) {
+            out_groups[at].bytes += group.bytes;
+        } else if (count < capacity) {
+            memmove(&out_groups[at + 1], &out_groups[at], (count - at) * sizeof(group));
+            out_groups[at] = group;
+            count++;
+        }
+    }
+    return count;
 }
 
 void gpu_inject_fault(struct gpu *gpu, enum renderer_fault fault, uint64_t number)

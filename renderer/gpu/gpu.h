@@ -11,6 +11,8 @@
 #include "renderer/error.h"
 #include "renderer/gpu/gpu_info.h"
 
+#define GPU_LABEL_BYTES 32u // of an object's label, with its terminator
+
 struct gpu;
 struct gpu_buffer;
 struct gpu_texture;
@@ -37,8 +39,15 @@ uint64_t gpu_error_count(const struct gpu *gpu);
 // Counts a misuse of the GPU that GL does not see as an error; the caller logs it.
 void gpu_count_error(struct gpu *gpu);
 
-// Bytes of all live buffers and textures whose label starts with `prefix`.
-uint64_t gpu_memory_bytes(const struct gpu *gpu, const char *prefix);
+// Live buffers and textures whose labels are equal up to the first dot.
+struct gpu_memory_group {
+    char name[GPU_LABEL_BYTES];
+    uint64_t bytes;
+};
+
+// All of them by name, sorted. Returns their number, at most `capacity`.
+uint32_t gpu_memory_groups(const struct gpu *gpu, struct gpu_memory_group *out_groups,
+                           uint32_t capacity);
 
 // Calls `yield`, which may block, before each dispatch or immediate draw. On CPU drivers only: they
 // run work of all contexts in sequence, so a frame of many long dispatches would hold up all

@@ -8,10 +8,8 @@
 
 #include "renderer/gpu/gpu.h"
 
-#define GPU_LABEL_SIZE 48
-
 struct gpu_allocation {
-    char label[GPU_LABEL_SIZE];
+    char label[GPU_LABEL_BYTES];
     uint64_t bytes;
     struct gpu_allocation *next;
     struct gpu_allocation **link; // the pointer that points here

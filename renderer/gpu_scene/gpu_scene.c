@@ -171,6 +171,21 @@ void gpu_scene_count_materials(struct gpu_scene *gpu_scene)
     free(counted);
 }
 
+struct scene_facts gpu_scene_get_facts(const struct gpu_scene *gpu_scene)
+{
+    const struct scene_environment *environment = &gpu_scene->scene->environment;
+    const struct texture_space *spaces = gpu_scene->texture_spaces;
+    return (struct scene_facts){
+        .counts = gpu_scene->counts,
+        .environment = environment->type != SCENE_ENVIRONMENT_NONE && environment->intensity > 0.0f,
+        .cascaded_shadow = gpu_scene->directional_light != NO_SHADOW,
+        .color_classes = spaces[TEXTURE_SPACE_COLOR].class_count,
+        .data_classes = spaces[TEXTURE_SPACE_DATA].class_count,
+        .texture_transforms = gpu_scene->texture_transforms,
+        .second_uv_set = gpu_scene->second_uv_set,
+    };
+}
+
 void gpu_scene_bind(const struct gpu_scene *gpu_scene)
 {
     struct gpu *gpu = gpu_scene->gpu;

@@ -6,6 +6,7 @@
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/gpu.h"
 #include "renderer/gpu/texture.h"
+#include "renderer/gpu_scene/scene_facts.h"
 #include "renderer/gpu_scene/shadow_map.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings.h"
@@ -58,29 +59,6 @@ struct gpu_scene_instance {
     bool large_emitter;  // and voxels gather it instead: see area_lights.c
     float bounds_min[3]; // world: relative to gpu_scene.origin, as in all of
     float bounds_max[3]; // gpu_scene/, frame/, gi/, passes/ and shaders/
-};
-
-struct gpu_scene_counts {
-    uint32_t instances;
-    uint32_t lights; // enabled punctual lights
-    uint32_t ranged_lights;
-    uint32_t area_lights;
-    uint32_t large_area_lights; // of these: see area_lights.c
-    uint32_t shadow_layers;
-    uint32_t unshadowed;          // lights that should cast shadows but got no layer
-    uint32_t single_view_shadows; // lights with one shadow view
-    uint32_t point_shadows;       // lights with six
-    uint32_t colored_primitives;  // with vertex colours other than white
-    uint32_t textured_materials;  // used by a visible instance; so are all below
-    uint32_t masked_materials;
-    uint32_t transparent_materials;
-    uint32_t blinn_phong_materials;
-    uint32_t specular_materials;
-    uint32_t lit_materials; // not unlit
-    uint32_t emissive_materials;
-    uint32_t reflective_materials; // that reflect any light
-    uint32_t transmissive_materials;
-    uint32_t sized_lights; // punctual lights with a radius, and area lights that are not large
 };
 
 // Images of one colour space: an array per size, and where each image of the scene is.
@@ -156,6 +134,8 @@ void gpu_scene_destroy(struct gpu_scene **gpu_scene);
 
 // Uploads what has changed by the scene's revisions. False with a message when memory runs out.
 bool gpu_scene_update(struct gpu_scene *gpu_scene, struct error *out_error);
+
+struct scene_facts gpu_scene_get_facts(const struct gpu_scene *gpu_scene);
 
 // Parts of the above, in files of their own.
 bool gpu_scene_upload_geometry(struct gpu_scene *gpu_scene);

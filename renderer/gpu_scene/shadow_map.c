@@ -52,7 +52,7 @@ static bool resize(struct shadow_map *map, uint32_t lights, uint32_t cascades)
     map->cascades = cascades;
     map->epoch++;
     map->texture = gpu_texture_create(map->gpu, &(struct gpu_texture_params){
-                                                    .label = "shadow_map",
+                                                    .label = "shadow_maps",
                                                     .format = GPU_FORMAT_DEPTH32F,
                                                     .width = map->edge,
                                                     .height = map->edge,

@@ -1,19 +1,17 @@
+#include <assert.h>
 #include <stdio.h>
 
-#include "renderer/gi/voxel/volume.h"
+#include "renderer/frame/view.h"
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/timer.h"
 #include "renderer/log.h"
 #include "renderer/passes/pass.h"
-#include "renderer/gpu_scene/gpu_scene.h"
-#include "renderer/frame/view.h"
+#include "shared/work_groups.h"
 
 const struct pass *const all_passes[PASS_COUNT] = {
-    &visibility_pass,       &gbuffer_pass,           &shadow_map_pass,       &voxelize_pass,
-    &voxel_relight_pass,    &voxel_filter_pass,      &irradiance_cache_pass, &light_tiles_pass,
-    &environment_pass,      &ray_shadows_pass,       &direct_light_pass,     &emission_pass,
-    &indirect_diffuse_pass, &indirect_specular_pass, &transparency_pass,     &reference_pass,
-    &debug_view_pass,       &exposure_pass,          &tonemap_pass,          &readback_pass,
+#define PASS(id, name, ...) [PASS_##id] = &name##_pass,
+#include "renderer/frame/frame.def"
+#undef PASS
 };
 
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error)
@@ -26,27 +24,52 @@ bool passes_check(const struct pass *const *passes, uint32_t count, struct error
         uint32_t missing = passes[i]->reads & ~written;
         if (missing)
             return error_set(out_error, "pass %s reads %s before any pass writes it",
-                             passes[i]->name, resource_rows[__builtin_ctz(missing)].name);
+                             pass_name((enum pass_id)i),
+                             resource_rows[__builtin_ctz(missing)].name);
         written |= passes[i]->writes;
     }
     return true;
 }
 
-void pass_check_bindings(const struct frame *frame, const struct pass *pass,
-                         const struct gpu_program *program)
+// Slots of the resources whose bits are set.
+static struct gpu_program_bindings slots_of(uint32_t resources)
+{
+    struct gpu_program_bindings slots = {0};
+    for (uint32_t i = 0; i < RESOURCE_COUNT; i++)
+        if (resources & (1u << i)) {
+            slots.storage |= resource_rows[i].storage;
+            slots.units |= resource_rows[i].units;
+            slots.images |= resource_rows[i].images;
+        }
+    return slots;
+}
+
+static void check_bindings(const struct frame *frame, const struct pass *pass,
+                           const struct shader_program *shader, const struct gpu_program *program)
 {
     struct gpu_program_bindings bound;
     if (!gpu_program_take_bindings(program, &bound))
         return;
+    struct gpu_program_bindings declared = slots_of(pass->reads | pass->writes);
     for (uint32_t i = 0; i < RESOURCE_COUNT; i++) {
         const struct resource_row *row = &resource_rows[i];
-        bool used = (bound.storage & row->storage) || (bound.units & row->units) ||
-                    (bound.images & row->images);
-        if (!used || ((pass->reads | pass->writes) & (1u << i)))
+        if (!(bound.storage & ~declared.storage & row->storage) &&
+            !(bound.units & ~declared.units & row->units) &&
+            !(bound.images & ~declared.images & row->images))
             continue;
-        log_write(LOG_ERROR, "pass_undeclared pass=%s resource=%s", pass->name, row->name);
+        log_write(LOG_ERROR, "pass_undeclared shader=%s resource=%s", shader->path, row->name);
         gpu_count_error(frame->gpu);
     }
+}
+
+// The view's own buffers that a pass declares. Two of them may share a slot.
+static void bind_buffers(const struct frame *frame, const struct pass *pass)
+{
+    uint32_t declared = pass->reads | pass->writes;
+    for (uint32_t i = 0; i < RESOURCE_COUNT; i++)
+        if ((declared & (1u << i)) && resource_rows[i].bytes)
+            gpu_bind_storage(frame->gpu, (uint32_t)__builtin_ctz(resource_rows[i].storage),
+                             frame->view->buffers[i]);
 }
 
 bool passes_execute(struct frame *frame, struct error *out_error)
@@ -55,17 +78,11 @@ bool passes_execute(struct frame *frame, struct error *out_error)
     gpu_timer_begin_frame(view->timer);
     for (uint32_t i = 0; i < PASS_COUNT; i++) {
         const struct pass *pass = all_passes[i];
-        const char *reason = frame->reference_picture && !pass->shows_reference
-                                 ? "the reference's picture is shown"
-                             : frame->accumulate_only && !pass->runs_while_accumulating
-                                 ? "light settles; the picture is that of before"
-                             : pass->skip_reason ? pass->skip_reason(frame)
-                                                 : NULL;
-        view->pass_skip_reasons[i] = reason;
-        if (reason)
+        if (!frame_plan_runs(frame->plan, (enum pass_id)i))
             continue;
-        gpu_push_group(frame->gpu, pass->name);
+        gpu_push_group(frame->gpu, pass_name((enum pass_id)i));
         gpu_timer_begin(view->timer, i);
+        bind_buffers(frame, pass);
         bool done = pass->run(frame, pass, out_error);
         gpu_barrier(frame->gpu);
         gpu_timer_end(view->timer, i);
@@ -76,36 +93,78 @@ bool passes_execute(struct frame *frame, struct error *out_error)
     return true;
 }
 
-const struct gpu_program *pass_program(const struct frame *frame, const struct pass *pass,
-                                       const char *shader, const char *extra,
-                                       struct error *out_error)
+void shader_program_write_defines(const struct shader_program *program,
+                                  const struct frame_plan *plan,
+                                  char out_defines[PROGRAM_DEFINES_BYTES])
 {
-    char defines[1024];
-    effects_write_defines(frame->plan.bits, pass->effects_used, frame->gpu_scene, defines,
-                          sizeof(defines));
     size_t used = 0;
-    while (defines[used])
-        used++;
-    snprintf(defines + used, sizeof(defines) - used, "%s", extra);
-    const struct gpu_program *program = gpu_program_get(frame->gpu, shader, defines, out_error);
-    if (program && pass->name)
-        pass_check_bindings(frame, pass, program);
+    out_defines[0] = '\0';
+    for (int i = 0; i < EFFECT_COUNT; i++)
+        if (program->effects & EFFECT_BIT(i))
+            used += (size_t)snprintf(out_defines + used, PROGRAM_DEFINES_BYTES - used, "%s %d\n",
+                                     effect_define((enum effect)i),
+                                     (plan->effects.bits & EFFECT_BIT(i)) != 0);
+    for (int i = 0; i < SWITCH_COUNT; i++)
+        if (program->switches & (1u << i))
+            used += (size_t)snprintf(out_defines + used, PROGRAM_DEFINES_BYTES - used, "%s %u\n",
+                                     plan_switch_define((enum plan_switch)i), plan->switches[i]);
+    used += (size_t)snprintf(out_defines + used, PROGRAM_DEFINES_BYTES - used, "%s",
+                             program->fixed ? program->fixed : "");
+    assert(used < PROGRAM_DEFINES_BYTES);
+}
+
+const struct gpu_program *pass_program(const struct frame *frame, const struct pass *pass,
+                                       uint32_t number, struct error *out_error)
+{
+    assert(number < pass->program_count);
+    const struct shader_program *shader = &pass->programs[number];
+    char defines[PROGRAM_DEFINES_BYTES];
+    shader_program_write_defines(shader, frame->plan, defines);
+    const struct gpu_program *program =
+        gpu_program_get(frame->gpu, shader->path, defines, out_error);
+    if (program)
+        check_bindings(frame, pass, shader, program);
     return program;
 }
 
-const struct gpu_program *voxel_program(const struct frame *frame, const struct pass *pass,
-                                        const char *shader, const char *extra,
-                                        struct error *out_error)
+bool pass_programs(const struct frame *frame, const struct pass *pass,
+                   const struct gpu_program *out_programs[], struct error *out_error)
 {
-    char defines[256];
-    bool isotropic = frame->volume->params.directions == VOXEL_ISOTROPIC;
-    snprintf(defines, sizeof(defines), "VOXEL_DIRECTIONS %d\n%s", isotropic ? 1 : VOXEL_FACES,
-             extra);
-    return pass_program(frame, pass, shader, defines, out_error);
+    for (uint32_t i = 0; i < pass->program_count; i++) {
+        out_programs[i] = pass_program(frame, pass, i, out_error);
+        if (!out_programs[i])
+            return false;
+    }
+    return true;
 }
 
-void pass_dispatch_pixels(const struct frame *frame, const struct gpu_program *program)
+bool pass_run_pixels(const struct frame *frame, const struct pass *pass, uint32_t number,
+                     struct error *out_error)
 {
-    gpu_dispatch(frame->gpu, program, (frame->width + GROUP_EDGE - 1) / GROUP_EDGE,
-                 (frame->height + GROUP_EDGE - 1) / GROUP_EDGE, 1);
+    const struct gpu_program *program = pass_program(frame, pass, number, out_error);
+    if (!program)
+        return false;
+    pass_dispatch_pixels(frame, program, 1);
+    return true;
+}
+
+bool filter_accumulation(const struct frame *frame, const struct pass *pass, uint32_t number,
+                         struct error *out_error)
+{
+    if (frame->plan->accumulation.only)
+        return true;
+    const struct gpu_program *program = pass_program(frame, pass, number, out_error);
+    if (!program)
+        return false;
+    pass_dispatch_pixels(frame, program, frame->plan->gather_step);
+    gpu_barrier(frame->gpu);
+    return true;
+}
+
+void pass_dispatch_pixels(const struct frame *frame, const struct gpu_program *program,
+                          uint32_t step)
+{
+    uint32_t edge = step * GROUP_EDGE;
+    gpu_dispatch(frame->gpu, program, (frame->plan->width + edge - 1) / edge,
+                 (frame->plan->height + edge - 1) / edge, 1);
 }

@@ -42,7 +42,7 @@ static void fit_cascade(struct frame *frame, uint32_t i)
     view->cascade_stale[i] = true;
 }
 
-static bool any_stale(const struct frame *frame)
+bool shadow_map_is_stale(const struct frame *frame)
 {
     for (uint32_t i = 0; i < frame->gpu_scene->counts.shadow_layers; i++)
         if (frame->gpu_scene->shadow_stale[i])
@@ -105,19 +105,13 @@ void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *b
     }
 }
 
-static const char *shadow_map_skip_reason(const struct frame *frame)
-{
-    if (!(frame->plan.bits & EFFECT_BIT(EFFECT_SHADOWS)))
-        return "no light casts a shadow";
-    if (frame->gpu_scene->counts.lit_materials == 0 && !frame->params->settings.force_all_effects)
-        return "every surface is unlit";
-    return any_stale(frame) ? NULL : "lights and casters unchanged";
-}
+enum { PROGRAM_OPAQUE, PROGRAM_MASKED, PROGRAM_COUNT };
 
 static bool draw_layer(struct frame *frame, const struct pass *pass,
                        const struct gpu_framebuffer *framebuffer, const mat4 clip_from_world,
                        struct error *out_error)
 {
+    static const enum draw_kind kinds[] = {DRAW_OPAQUE, DRAW_MASKED};
     struct draw_list *draws = &frame->view->shadow_draws;
     draw_list_fill(draws, frame->gpu_scene, clip_from_world, NULL);
     gpu_begin_raster(frame->gpu, &(struct gpu_raster_params){
@@ -129,19 +123,13 @@ static bool draw_layer(struct frame *frame, const struct pass *pass,
                                      .depth_bias_slope = BIAS_SLOPE,
                                      .depth_bias_constant = BIAS_CONSTANT,
                                  });
-    static const struct {
-        enum draw_kind kind;
-        const char *defines;
-    } kinds[] = {{DRAW_OPAQUE, "ALPHA_MASK 0\nSHADOW_VIEW 1\nLIST 0\n"},
-                 {DRAW_MASKED, "ALPHA_MASK 1\nSHADOW_VIEW 1\nLIST 0\n"}};
-    for (int i = 0; i < 2; i++) {
-        if (!draw_list_has(draws, kinds[i].kind))
+    for (uint32_t i = 0; i < PROGRAM_COUNT; i++) {
+        if (!draw_list_has(draws, kinds[i]))
             continue;
-        const struct gpu_program *program =
-            pass_program(frame, pass, "visibility/visibility", kinds[i].defines, out_error);
+        const struct gpu_program *program = pass_program(frame, pass, i, out_error);
         if (!program)
             return false;
-        draw_list_draw(draws, frame->gpu_scene, program, kinds[i].kind, false);
+        draw_list_draw(draws, frame->gpu_scene, program, kinds[i], false);
     }
     gpu_end_raster(frame->gpu);
     return true;
@@ -173,10 +161,12 @@ static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct 
 }
 
 const struct pass shadow_map_pass = {
-    .name = "shadow_map",
-    .effects_used = EFFECT_BIT(EFFECT_TEXTURES),
     .reads = RESOURCE(MATERIALS) | RESOURCE(GEOMETRY),
     .writes = RESOURCE(SHADOW_MAP),
-    .skip_reason = shadow_map_skip_reason,
+    .program_count = PROGRAM_COUNT,
+    .programs = {{"visibility/visibility", 0, TEXTURE_SWITCHES,
+                  "ALPHA_MASK 0\nSHADOW_VIEW 1\nLIST 0\n"},
+                 {"visibility/visibility", 0, TEXTURE_SWITCHES,
+                  "ALPHA_MASK 1\nSHADOW_VIEW 1\nLIST 0\n"}},
     .run = shadow_map_run,
 };

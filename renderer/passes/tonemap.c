@@ -1,9 +1,7 @@
 // Exposure, tone curve and transfer function to output pixels.
-#include <stdio.h>
-
 #include "renderer/passes/pass.h"
-#include "renderer/frame/view.h"
 #include "shared/display.h"
+#include "shared/work_groups.h"
 
 _Static_assert((int)FRAME_OUTPUT_YCBCR == OUTPUT_YCBCR && (int)FRAME_OUTPUT_RGBA8 == OUTPUT_RGBA8 &&
                    (int)FRAME_OUTPUT_LINEAR == OUTPUT_LINEAR,
@@ -11,12 +9,7 @@ _Static_assert((int)FRAME_OUTPUT_YCBCR == OUTPUT_YCBCR && (int)FRAME_OUTPUT_RGBA
 
 static bool tonemap_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
-    char extra[64];
-    snprintf(extra, sizeof(extra), "OUTPUT %d\nDISPLAY_READY %d\nBLANK %d\n",
-             (int)frame->params->output, !frame_shows_light(frame),
-             frame_blank_reason(frame) != NULL);
-    const struct gpu_program *program =
-        pass_program(frame, pass, "post/tonemap.comp", extra, out_error);
+    const struct gpu_program *program = pass_program(frame, pass, 0, out_error);
     if (!program)
         return false;
     bool planar = frame->params->output == FRAME_OUTPUT_YCBCR;
@@ -27,9 +20,10 @@ static bool tonemap_run(struct frame *frame, const struct pass *pass, struct err
 }
 
 const struct pass tonemap_pass = {
-    .name = "tonemap",
     .reads = RESOURCE(RADIANCE) | RESOURCE(EXPOSURE),
     .writes = RESOURCE(OUTPUT),
+    .program_count = 1,
+    .programs = {{"post/tonemap.comp", 0,
+                  SWITCH_BIT(OUTPUT) | SWITCH_BIT(DISPLAY_READY) | SWITCH_BIT(BLANK), NULL}},
     .run = tonemap_run,
-    .shows_reference = true,
 };

@@ -3,20 +3,10 @@
 #include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 
-static const char *voxel_filter_skip_reason(const struct frame *frame)
-{
-    if (!frame_has_cones(frame))
-        return "no effect needs voxels";
-    if (frame->volume->level_count == 1)
-        return "one level only";
-    return frame->light_work.relight ? NULL : "light in voxels unchanged";
-}
-
 static bool voxel_filter_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
     struct voxel_volume *volume = frame->volume;
-    const struct gpu_program *program =
-        voxel_program(frame, pass, "voxel/voxel_filter.comp", "", out_error);
+    const struct gpu_program *program = pass_program(frame, pass, 0, out_error);
     if (!program)
         return false;
     for (uint32_t level = 1; level < volume->level_count; level++) {
@@ -29,11 +19,10 @@ static bool voxel_filter_run(struct frame *frame, const struct pass *pass, struc
 }
 
 const struct pass voxel_filter_pass = {
-    .name = "voxel_filter",
-    .effects_used = EFFECT_BIT(EFFECT_CLIP_LEVELS),
-    .runs_while_accumulating = true,
     .reads = RESOURCE(VOXELS) | RESOURCE(VOXEL_RADIANCE),
     .writes = RESOURCE(VOXEL_RADIANCE) | RESOURCE(IRRADIANCE),
-    .skip_reason = voxel_filter_skip_reason,
+    .program_count = 1,
+    .programs = {{"voxel/voxel_filter.comp", EFFECT_BIT(EFFECT_CLIP_LEVELS),
+                  SWITCH_BIT(VOXEL_DIRECTIONS), NULL}},
     .run = voxel_filter_run,
 };

@@ -9,12 +9,17 @@
 #define REGION_RUN 32u
 #define CELL_RUN   16u
 
-static const char *voxelize_skip_reason(const struct frame *frame)
-{
-    if (!frame_has_cones(frame))
-        return "no effect needs voxels";
-    return frame->light_work.voxelize ? NULL : "geometry and clip levels unmoved";
-}
+enum {
+    PROGRAM_CLEAR,
+    PROGRAM_SMALL,
+    PROGRAM_LARGE,
+    PROGRAM_CELLS,
+    PROGRAM_REPAIR,
+    PROGRAM_LIST,
+    PROGRAM_ARGUMENTS,
+    PROGRAM_TILES,
+    PROGRAM_COUNT
+};
 
 // Work groups whose invocations process `run` items each.
 static uint32_t groups_of(uint32_t count, uint32_t run)
@@ -30,36 +35,7 @@ static void dispatch_rows(const struct frame *frame, const struct gpu_program *p
     gpu_barrier(frame->gpu);
 }
 
-struct voxelize_programs {
-    const struct gpu_program *clear, *small, *large, *cells, *repair, *list, *arguments, *tiles;
-};
-
-static bool get_programs(const struct frame *frame, const struct pass *pass,
-                         struct voxelize_programs *programs, struct error *out_error)
-{
-    const struct {
-        const struct gpu_program **program;
-        const char *shader, *extra;
-    } wanted[] = {
-        {&programs->clear, "voxel/voxel_clear.comp", ""},
-        {&programs->small, "voxel/voxelize.comp", "LARGE 0\n"},
-        {&programs->large, "voxel/voxelize.comp", "LARGE 1\n"},
-        {&programs->cells, "voxel/voxel_cells.comp", ""},
-        {&programs->repair, "voxel/voxel_lists.comp", "STAGE LISTS_RESET\n"},
-        {&programs->list, "voxel/voxel_lists.comp", "STAGE LISTS_APPEND\n"},
-        {&programs->arguments, "voxel/voxel_lists.comp", "STAGE LISTS_ARGUMENTS\n"},
-        {&programs->tiles, "voxel/voxel_lists.comp", "STAGE LISTS_TILE_ARGUMENTS\n"},
-    };
-    for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++) {
-        *wanted[i].program =
-            voxel_program(frame, pass, wanted[i].shader, wanted[i].extra, out_error);
-        if (!*wanted[i].program)
-            return false;
-    }
-    return true;
-}
-
-static void empty_regions(const struct frame *frame, const struct voxelize_programs *programs)
+static void empty_regions(const struct frame *frame, const struct gpu_program *const programs[])
 {
     struct voxel_volume *volume = frame->volume;
     if (volume->everything) {
@@ -70,28 +46,28 @@ static void empty_regions(const struct frame *frame, const struct voxelize_progr
         gpu_barrier(frame->gpu);
     } else {
         // Light injection may have taken more face records than were free.
-        gpu_dispatch(frame->gpu, programs->repair, 1, 1, 1);
+        gpu_dispatch(frame->gpu, programs[PROGRAM_REPAIR], 1, 1, 1);
         gpu_barrier(frame->gpu);
-        dispatch_rows(frame, programs->clear, groups_of(volume->region_voxels, REGION_RUN));
+        dispatch_rows(frame, programs[PROGRAM_CLEAR], groups_of(volume->region_voxels, REGION_RUN));
     }
     gpu_buffer_fill(volume->counters, COUNTER_TILES * 4, 4, 0);
 }
 
-static void enter_triangles(const struct frame *frame, const struct voxelize_programs *programs)
+static void enter_triangles(const struct frame *frame, const struct gpu_program *const programs[])
 {
     struct voxel_volume *volume = frame->volume;
-    dispatch_rows(frame, programs->small, volume->batch_count);
-    gpu_dispatch(frame->gpu, programs->tiles, 1, 1, 1);
+    dispatch_rows(frame, programs[PROGRAM_SMALL], volume->batch_count);
+    gpu_dispatch(frame->gpu, programs[PROGRAM_TILES], 1, 1, 1);
     gpu_barrier(frame->gpu);
-    gpu_dispatch_indirect(frame->gpu, programs->large, volume->counters, COUNTER_TILES * 4);
+    gpu_dispatch_indirect(frame->gpu, programs[PROGRAM_LARGE], volume->counters, COUNTER_TILES * 4);
     gpu_barrier(frame->gpu);
 }
 
-static void list_cells(const struct frame *frame, const struct voxelize_programs *programs)
+static void list_cells(const struct frame *frame, const struct gpu_program *const programs[])
 {
     struct voxel_volume *volume = frame->volume;
-    dispatch_rows(frame, programs->cells, groups_of(volume->region_voxels, REGION_RUN));
-    gpu_dispatch(frame->gpu, programs->repair, 1, 1, 1);
+    dispatch_rows(frame, programs[PROGRAM_CELLS], groups_of(volume->region_voxels, REGION_RUN));
+    gpu_dispatch(frame->gpu, programs[PROGRAM_REPAIR], 1, 1, 1);
     gpu_barrier(frame->gpu);
     if (volume->dirty[volume->cell_level_count - 1].count == 0)
         return; // mips of the coarsest level have not changed
@@ -102,17 +78,17 @@ static void list_cells(const struct frame *frame, const struct voxelize_programs
 static bool voxelize_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
     struct voxel_volume *volume = frame->volume;
-    struct voxelize_programs programs;
-    if (!get_programs(frame, pass, &programs, out_error))
+    const struct gpu_program *programs[PROGRAM_COUNT];
+    if (!pass_programs(frame, pass, programs, out_error))
         return false;
     for (int attempt = 0; attempt < MAX_GROWTH; attempt++) {
-        empty_regions(frame, &programs);
-        enter_triangles(frame, &programs);
-        list_cells(frame, &programs);
+        empty_regions(frame, programs);
+        enter_triangles(frame, programs);
+        list_cells(frame, programs);
         enum voxel_room room = voxel_volume_check_room(volume);
         if (room == VOXEL_ROOM_ENOUGH) {
-            dispatch_rows(frame, programs.list, groups_of(volume->cell_count, CELL_RUN));
-            gpu_dispatch(frame->gpu, programs.arguments, 1, 1, 1);
+            dispatch_rows(frame, programs[PROGRAM_LIST], groups_of(volume->cell_count, CELL_RUN));
+            gpu_dispatch(frame->gpu, programs[PROGRAM_ARGUMENTS], 1, 1, 1);
             volume->everything = false;
             return true;
         }
@@ -126,12 +102,24 @@ static bool voxelize_run(struct frame *frame, const struct pass *pass, struct er
                                 "voxel_resolution");
 }
 
+#define EFFECTS  (EFFECT_BIT(EFFECT_VERTEX_COLORS) | EFFECT_BIT(EFFECT_VOXEL_COLORS))
+#define SWITCHES (TEXTURE_SWITCHES | SWITCH_BIT(VOXEL_DIRECTIONS))
+
 const struct pass voxelize_pass = {
-    .name = "voxelize",
-    .effects_used = SURFACE_EFFECTS | EFFECT_BIT(EFFECT_VOXEL_COLORS),
-    .runs_while_accumulating = true,
     .reads = RESOURCE(GEOMETRY) | RESOURCE(MATERIALS),
     .writes = RESOURCE(VOXELS) | RESOURCE(IRRADIANCE) | RESOURCE(VOXEL_RADIANCE),
-    .skip_reason = voxelize_skip_reason,
+    .program_count = PROGRAM_COUNT,
+    .programs = {[PROGRAM_CLEAR] = {"voxel/voxel_clear.comp", EFFECTS, SWITCHES, NULL},
+                 [PROGRAM_SMALL] = {"voxel/voxelize.comp", EFFECTS, SWITCHES, "LARGE 0\n"},
+                 [PROGRAM_LARGE] = {"voxel/voxelize.comp", EFFECTS, SWITCHES, "LARGE 1\n"},
+                 [PROGRAM_CELLS] = {"voxel/voxel_cells.comp", EFFECTS, SWITCHES, NULL},
+                 [PROGRAM_REPAIR] = {"voxel/voxel_lists.comp", EFFECTS, SWITCHES,
+                                     "STAGE LISTS_RESET\n"},
+                 [PROGRAM_LIST] = {"voxel/voxel_lists.comp", EFFECTS, SWITCHES,
+                                   "STAGE LISTS_APPEND\n"},
+                 [PROGRAM_ARGUMENTS] = {"voxel/voxel_lists.comp", EFFECTS, SWITCHES,
+                                        "STAGE LISTS_ARGUMENTS\n"},
+                 [PROGRAM_TILES] = {"voxel/voxel_lists.comp", EFFECTS, SWITCHES,
+                                    "STAGE LISTS_TILE_ARGUMENTS\n"}},
     .run = voxelize_run,
 };

@@ -96,7 +96,7 @@ static void add_float(cJSON *object, const char *name, float value)
     cJSON_AddNumberToObject(object, name, strtod(text, NULL));
 }
 
-static_assert(sizeof(struct quality_level) == 13 * sizeof(uint32_t),
+static_assert(sizeof(struct quality_level) == 14 * sizeof(uint32_t),
               "a field that is new belongs into accuracy_quality_table(), too");
 
 cJSON *accuracy_quality_table(void)
@@ -119,6 +119,7 @@ cJSON *accuracy_quality_table(void)
         cJSON_AddBoolToObject(row, "cone_shadows", level->cone_shadows);
         add_float(row, "specular_roughness", level->specular_roughness);
         add_float(row, "specular_reflectance", level->specular_reflectance);
+        cJSON_AddBoolToObject(row, "shared_specular_cones", level->shared_specular_cones);
     }
     return table;
 }

@@ -56,21 +56,33 @@ struct voxel_volume *voxel_rig_volume(struct voxel_rig *rig, enum gi_method meth
     return volume;
 }
 
-static struct frame begin(struct voxel_rig *rig, struct voxel_volume *volume)
+// A frame that does `work` with the volume and nothing else.
+static struct frame begin(struct voxel_rig *rig, struct voxel_volume *volume,
+                          struct voxel_light_work work)
 {
+    const struct gi_state gi = {.level_count = volume->level_count,
+                                .cell_level_count = volume->cell_level_count,
+                                .work = work};
     rig->params.settings.gi_method = volume->params.method;
-    struct frame frame = {
+    const struct frame_inputs inputs = {
+        .params = &rig->params,
+        .revisions = &rig->gpu_scene->scene->revisions,
+        .history = &rig->view->history,
+        .scene = gpu_scene_get_facts(rig->gpu_scene),
+        .gi_capabilities = gi_methods[volume->params.method]->capabilities,
+        .gi = &gi,
+    };
+    frame_plan_make(&rig->view->plan, &inputs);
+    return (struct frame){
         .gpu = rig->gpu,
         .gpu_scene = rig->gpu_scene,
         .view = rig->view,
         .params = &rig->params,
         .camera = rig->params.camera,
-        .quality = &quality_levels[QUALITY_FINAL],
+        .plan = &rig->view->plan,
         .volume = volume,
+        .gi = gi,
     };
-    frame.gi_capabilities = gi_methods[volume->params.method]->capabilities;
-    effects_plan(&frame.plan, rig->gpu_scene, &rig->params, frame.gi_capabilities);
-    return frame;
 }
 
 static void bind(struct voxel_rig *rig, struct voxel_volume *volume)
@@ -87,7 +99,7 @@ static void run(struct frame *frame, const struct pass *pass)
 {
     struct error error = {""};
     if (!pass->run(frame, pass, &error))
-        fail_msg("%s: %s", pass->name, error.message);
+        fail_msg("%s", error.message);
     gpu_barrier(frame->gpu);
 }
 
@@ -98,7 +110,7 @@ void voxel_rig_voxelize(struct voxel_rig *rig, struct voxel_volume *volume, cons
         fail_msg("%s", error.message);
     memcpy(rig->params.camera.eye, eye, sizeof(rig->params.camera.eye));
     assert_true(voxel_volume_update(volume, rig->gpu_scene, eye));
-    struct frame frame = begin(rig, volume);
+    struct frame frame = begin(rig, volume, (struct voxel_light_work){.voxelize = true});
     bind(rig, volume);
     if (volume->region_count > 0)
         run(&frame, &voxelize_pass);
@@ -106,10 +118,9 @@ void voxel_rig_voxelize(struct voxel_rig *rig, struct voxel_volume *volume, cons
 
 void voxel_rig_light(struct voxel_rig *rig, struct voxel_volume *volume)
 {
-    struct frame frame = begin(rig, volume);
-    frame.light_work.relight = true;
-    frame.light_work.direct = true;
-    frame.light_work.relight_end = volume->cell_level_count;
+    const struct voxel_light_work work = {
+        .relight = true, .direct = true, .relight_end = volume->cell_level_count};
+    struct frame frame = begin(rig, volume, work);
     bind(rig, volume);
     run(&frame, &voxel_relight_pass);
     run(&frame, &voxel_filter_pass);

@@ -40,6 +40,7 @@ static enum gi_readiness prepare(struct gi *gi, struct frame *frame, bool same)
         return GI_PENDING;
     if (view->reference.shown_samples > 0)
         frame->reference_picture = view->reference.rgba;
+    frame->inputs.reference_shown = frame->reference_picture != NULL;
     return GI_READY;
 }
 

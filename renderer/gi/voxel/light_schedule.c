@@ -131,7 +131,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
     volume->uniforms.trace_budget = (uint32_t)entry_budget(volume, params);
     volume->uniforms.all_faces = params->all_faces;
     volume->uniforms.peak_radiance = light->peak;
-    light->feeds = feeds;
+    out_work->inject_bounce = feeds;
 }
 
 void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,

@@ -51,7 +51,6 @@ struct voxel_light_state {
     bool converged;
     bool unlimited;              // number of bounces
     bool all_faces_requested;    // trace all faces, not only requested ones
-    bool feeds;                  // voxels include the cache's bounce
     uint32_t generation;         // 1 to 65535, then wraps to 1
     uint32_t bounce;             // generations completed since the last change of light
     uint32_t needed;             // generations for the wanted bounces

@@ -6,8 +6,6 @@
 #include <string.h>
 
 #include "renderer/gi/voxel/cones.h"
-#include "renderer/gi/voxel/accumulation.h"
-#include "renderer/gi/voxel/light_hash.h"
 #include "renderer/frame/view.h"
 #include "renderer/gi/voxel/light_schedule.h"
 #include "renderer/gi/voxel/volume.h"
@@ -23,9 +21,6 @@
 // Cones start so many voxels above the surface.
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
-// Cache cones where the settings leave them open.
-#define CACHE_CONES CONE_SET_16
-#define CACHE_STEP  1.0f
 
 void gi_release_all(struct gi *gi)
 {
@@ -57,12 +52,6 @@ struct voxel_volume *gi_find(const struct gi *gi, uint64_t serial)
     return NULL;
 }
 
-// Independent of quality: views of different quality share the cache.
-static enum cone_set cache_cones_of(const struct render_settings *settings)
-{
-    return settings->cone_set == CONE_SET_AUTO ? CACHE_CONES : settings->cone_set;
-}
-
 static uint32_t edge_of(enum voxel_resolution resolution)
 {
     return 32u << resolution;
@@ -76,11 +65,11 @@ static enum voxel_resolution automatic_resolution(const struct frame *frame,
     if (!gpu_get_info(frame->gpu)->software)
         return VOXEL_RESOLUTION_128;
     struct voxel_volume_params wanted = *params;
-    wanted.edge = edge_of(frame->quality->voxel_resolution);
+    wanted.edge = edge_of(frame->plan->quality.voxel_resolution);
     bool deep = wanted.method == GI_METHOD_CLIPMAP &&
-                frame->quality->voxel_resolution > VOXEL_RESOLUTION_64 &&
+                frame->plan->quality.voxel_resolution > VOXEL_RESOLUTION_64 &&
                 voxel_volume_choose_clip_levels(&wanted, frame->gpu_scene) > 1;
-    return deep ? VOXEL_RESOLUTION_64 : frame->quality->voxel_resolution;
+    return deep ? VOXEL_RESOLUTION_64 : frame->plan->quality.voxel_resolution;
 }
 
 static struct voxel_volume_params volume_params(const struct frame *frame)
@@ -90,7 +79,7 @@ static struct voxel_volume_params volume_params(const struct frame *frame)
         .method = settings->gi_method,
         .clip_levels = settings->gi_method == GI_METHOD_CLIPMAP ? settings->clip_levels : 0,
         .directions = settings->voxel_directions,
-        .cache_cones = cone_set_count(cache_cones_of(settings)),
+        .cache_cones = cone_set_count(frame->plan->cache_cone_set),
         .colors = frame_has(frame, EFFECT_VOXEL_COLORS),
     };
     enum voxel_resolution resolution = settings->voxel_resolution;
@@ -220,27 +209,6 @@ static float radiance_scale(const struct gpu_scene *gpu_scene, float before)
     return suits ? before : scale;
 }
 
-// Hash of everything that light in voxels depends on. Excludes quality: views of different quality
-// share a volume and would invalidate it in turn.
-static uint64_t light_key(const struct frame *frame)
-{
-    const struct render_settings *settings = &frame->params->settings;
-    const struct scene_revisions *now = &frame->gpu_scene->scene->revisions;
-    uint64_t words[] = {
-        now->geometry,
-        now->transforms,
-        now->materials,
-        now->lights,
-        settings->environment_light ? now->environment + 1 : 0,
-        frame_has(frame, EFFECT_MULTI_BOUNCE),
-        render_settings_hash(settings, INVALIDATES_LIGHT),
-    };
-    uint64_t hash = 1469598103934665603ull;
-    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
-        hash = hash_word(hash, words[i]);
-    return hash;
-}
-
 static void fill_march(struct voxel_volume *volume, enum cone_set set, float step,
                        struct cone_march *out_march, struct voxel_cone out_cones[VOXEL_MAX_CONES])
 {
@@ -258,25 +226,14 @@ static void fill_march(struct voxel_volume *volume, enum cone_set set, float ste
 
 static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
 {
-    const struct render_settings *settings = &frame->params->settings;
+    const struct frame_plan *plan = frame->plan;
     struct voxel_block *block = &volume->uniforms;
-    bool automatic = settings->cone_set == CONE_SET_AUTO;
-    bool own_step = settings->cone_step > 0.0f;
-    fill_march(volume, cache_cones_of(settings), own_step ? settings->cone_step : CACHE_STEP,
-               &block->cache_march, block->cache_cones);
-    fill_march(volume, automatic ? frame->quality->cone_set : settings->cone_set,
-               own_step ? settings->cone_step : frame->quality->cone_step, &block->pixel_march,
+    fill_march(volume, plan->cache_cone_set, plan->cache_cone_step, &block->cache_march,
+               block->cache_cones);
+    fill_march(volume, plan->quality.cone_set, plan->quality.cone_step, &block->pixel_march,
                block->pixel_cones);
     block->ao_radius_m = OCCLUSION_FRACTION * frame->gpu_scene->diagonal_m;
-    block->indirect_intensity = settings->indirect_intensity;
-}
-
-// Whether pixels read the cache instead of gathering the last bounce themselves.
-static bool frame_shows_cache(const struct frame *frame)
-{
-    enum debug_view view = frame->params->debug_view;
-    return frame_gather_mode(frame) == GATHER_CACHE || view == DEBUG_VIEW_VOXEL_IRRADIANCE ||
-           view == DEBUG_VIEW_AMBIENT_OCCLUSION || view == DEBUG_VIEW_CACHE_AGE;
+    block->indirect_intensity = frame->params->settings.indirect_intensity;
 }
 
 // Whether only transparent layers read the cache: with one bounce pixels gather it themselves, and
@@ -294,7 +251,7 @@ static bool too_many_own(const struct gi *gi, const struct frame *frame)
 
 static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
 {
-    if (!(frame->plan.bits & VOXEL_EFFECTS))
+    if (!(frame->plan->effects.bits & VOXEL_EFFECTS))
         return true;
     const struct render_settings *settings = &frame->params->settings;
     struct voxel_volume_params params = volume_params(frame);
@@ -309,30 +266,39 @@ static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
     if (!volume || !voxel_volume_update(volume, frame->gpu_scene, frame->camera.eye))
         return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
     frame->volume = volume;
-    frame->view->volume_serial = found->serial;
     fill_cones(frame, volume);
     volume->scale = radiance_scale(frame->gpu_scene, volume->scale);
+    bool shows_cache = frame_plan_shows_cache(&frame->inputs, frame->plan);
     struct voxel_light_params light = {
-        .key = light_key(frame),
+        .key = frame->plan->light_key,
         .bounces = settings->bounces,
         .multi_bounce = frame_has(frame, EFFECT_MULTI_BOUNCE),
         .all_faces = frame_has(frame, EFFECT_MULTI_BOUNCE) || layers_alone_show_cache(frame),
-        .cache_shown = frame_shows_cache(frame) || layers_alone_show_cache(frame),
-        .camera_moved = frame->visibility_changed,
+        .cache_shown = shows_cache || layers_alone_show_cache(frame),
+        .camera_moved = frame->plan->surfaces_changed,
         .software = gpu_get_info(gi->gpu)->software,
         .levels_per_frame = settings->levels_per_frame,
         .trace_budget = gi->trace_budget,
     };
-    voxel_light_begin(volume, &light, &frame->light_work);
-    frame->voxel_level_count = volume->level_count;
-    frame->light_converged = volume->light.converged;
+    frame->gi = (struct gi_state){.serial = found->serial,
+                                  .level_count = volume->level_count,
+                                  .cell_level_count = volume->cell_level_count};
+    voxel_light_begin(volume, &light, &frame->gi.work);
+    frame->gi.light_converged = volume->light.converged;
+    frame->gi.light_version = volume->light.version;
     return true;
 }
 
 static void bind(const struct frame *frame)
 {
-    if (frame->volume)
-        voxel_volume_bind(frame->volume);
+    const struct accumulation_plan *accumulation = &frame->plan->accumulation;
+    if (!frame->volume)
+        return;
+    struct voxel_block *block = &frame->volume->uniforms;
+    block->sample_count = (float)accumulation->samples;
+    block->specular_max_roughness = accumulation->specular_max_roughness;
+    block->specular_min_reflectance = accumulation->specular_min_reflectance;
+    voxel_volume_bind(frame->volume);
 }
 
 // Light in voxels first, then the samples of pixels.
@@ -341,14 +307,14 @@ static float convergence(const struct frame *frame)
     if (!frame->volume)
         return 1.0f;
     float light = voxel_light_convergence(frame->volume);
-    if (light < 1.0f || frame->accumulation_target <= 1)
+    const struct accumulation_plan *accumulation = &frame->plan->accumulation;
+    if (light < 1.0f || accumulation->target <= 1)
         return light < 1.0f ? 0.9f * light : 1.0f;
-    float averaged = (float)frame->accumulated_samples / (float)frame->accumulation_target;
+    float averaged = (float)accumulation->samples / (float)accumulation->target;
     return fminf(0.9f + 0.1f * averaged, 1.0f);
 }
 
-#define VOXEL_HOOKS                                                                                \
-    .begin = begin, .plan = gi_plan_accumulation, .bind = bind, .convergence = convergence
+#define VOXEL_HOOKS .begin = begin, .bind = bind, .convergence = convergence
 
 const struct gi_method_hooks gi_voxels_clipmap = {
     .capabilities = GI_HAS_CONES | GI_HAS_CLIP_LEVELS,
