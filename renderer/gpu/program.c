@@ -10,7 +10,8 @@
 #include "renderer/gpu/shader_source.h"
 #include "renderer/log.h"
 
-#define MAX_PROGRAMS        256
+// Beyond, the one that has not been asked for longest makes room. A frame uses about 40.
+#define MAX_PROGRAMS        512
 #define MAX_DEFINES         512
 #define MAX_WATCHED_FOLDERS 32
 #define LOG_BYTES           8192
@@ -20,6 +21,7 @@ struct gpu_program {
     char path[SHADER_MAX_PATH];
     char defines[MAX_DEFINES];
     bool stale;
+    uint64_t used; // the library's clock when it was last asked for
     struct gpu_program_bindings bindings;
     bool bindings_taken; // since the program was built
     uint32_t file_count;
@@ -28,7 +30,8 @@ struct gpu_program {
 
 struct gpu_program_library {
     uint32_t count;
-    struct gpu_program programs[MAX_PROGRAMS];
+    struct gpu_program *programs[MAX_PROGRAMS]; // the first `count` are valid
+    uint64_t clock;
     int watch_fd;
     uint32_t folder_count;
     struct {
@@ -184,6 +187,29 @@ static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *
     return name;
 }
 
+static void destroy(struct gpu *gpu, struct gpu_program *program)
+{
+    if (program->name) {
+        glDeleteProgram(program->name);
+        gpu->current_program = 0;
+    }
+    free(program->files);
+    free(program);
+}
+
+// The index for one more program.
+static uint32_t make_room(struct gpu *gpu, struct gpu_program_library *library)
+{
+    if (library->count < MAX_PROGRAMS)
+        return library->count++;
+    uint32_t oldest = 0;
+    for (uint32_t i = 1; i < library->count; i++)
+        if (library->programs[i]->used < library->programs[oldest]->used)
+            oldest = i;
+    destroy(gpu, library->programs[oldest]);
+    return oldest;
+}
+
 const struct gpu_program *gpu_program_get(struct gpu *gpu, const char *path, const char *defines,
                                           struct error *out_error)
 {
@@ -192,25 +218,33 @@ const struct gpu_program *gpu_program_get(struct gpu *gpu, const char *path, con
         error_set(out_error, "out of memory");
         return NULL;
     }
+    library->clock++;
     for (uint32_t i = 0; i < library->count; i++) {
-        const struct gpu_program *known = &library->programs[i];
-        if (strcmp(known->path, path) == 0 && strcmp(known->defines, defines) == 0)
+        struct gpu_program *known = library->programs[i];
+        if (strcmp(known->path, path) == 0 && strcmp(known->defines, defines) == 0) {
+            known->used = library->clock;
             return known;
+        }
     }
-    if (library->count == MAX_PROGRAMS || strlen(defines) >= MAX_DEFINES) {
-        error_set(out_error, "shader \"%s\": more than %d programs", path, MAX_PROGRAMS);
+    if (strlen(defines) >= MAX_DEFINES) {
+        error_set(out_error, "shader \"%s\": its defines take more than %d bytes", path,
+                  MAX_DEFINES);
         return NULL;
     }
-    struct gpu_program *program = &library->programs[library->count];
-    *program = (struct gpu_program){0};
+    struct gpu_program *program = calloc(1, sizeof(*program));
+    if (!program) {
+        error_set(out_error, "out of memory");
+        return NULL;
+    }
     snprintf(program->path, sizeof(program->path), "%s", path);
     snprintf(program->defines, sizeof(program->defines), "%s", defines);
+    program->used = library->clock;
     program->name = build(gpu, program, out_error);
     if (!program->name) {
-        free(program->files);
+        destroy(gpu, program);
         return NULL;
     }
-    library->count++;
+    library->programs[make_room(gpu, library)] = program;
     return program;
 }
 
@@ -254,9 +288,9 @@ static void mark_stale(struct gpu_program_library *library, const struct inotify
     char path[SHADER_MAX_PATH];
     snprintf(path, sizeof(path), "%s%s", folder, event->len ? event->name : "");
     for (uint32_t i = 0; i < library->count; i++)
-        for (uint32_t j = 0; j < library->programs[i].file_count; j++)
-            if (strcmp(library->programs[i].files[j], path) == 0)
-                library->programs[i].stale = true;
+        for (uint32_t j = 0; j < library->programs[i]->file_count; j++)
+            if (strcmp(library->programs[i]->files[j], path) == 0)
+                library->programs[i]->stale = true;
 }
 
 uint32_t gpu_programs_reload_changed(struct gpu *gpu, struct error *out_error)
@@ -274,7 +308,7 @@ uint32_t gpu_programs_reload_changed(struct gpu *gpu, struct error *out_error)
     }
     uint32_t rebuilt = 0;
     for (uint32_t i = 0; i < library->count; i++) {
-        struct gpu_program *program = &library->programs[i];
+        struct gpu_program *program = library->programs[i];
         if (!program->stale)
             continue;
         program->stale = false;
@@ -321,10 +355,8 @@ void gpu_programs_destroy(struct gpu *gpu)
     gpu->programs = NULL;
     if (!library)
         return;
-    for (uint32_t i = 0; i < library->count; i++) {
-        glDeleteProgram(library->programs[i].name);
-        free(library->programs[i].files);
-    }
+    for (uint32_t i = 0; i < library->count; i++)
+        destroy(gpu, library->programs[i]);
     if (library->watch_fd >= 0)
         close(library->watch_fd);
     free(library);

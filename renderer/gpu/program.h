@@ -5,8 +5,9 @@
 #include "renderer/gpu/gpu.h"
 
 // The permutation of a shader file (path below the shader folder) for these defines, built on first
-// use and kept. `path` names a compute shader ("gbuffer.comp") or, without extension, a pair of
-// .vert and .frag. `defines` are lines of a name and a value, or "". NULL on failure.
+// use and kept until several hundred others have been asked for. `path` names a compute shader
+// ("gbuffer.comp") or, without extension, a pair of .vert and .frag. `defines` are lines of a name
+// and a value, or "". NULL on failure.
 const struct gpu_program *gpu_program_get(struct gpu *gpu, const char *path, const char *defines,
                                           struct error *out_error);
 

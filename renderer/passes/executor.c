@@ -44,25 +44,23 @@ static struct gpu_program_bindings slots_of(uint32_t resources)
     return slots;
 }
 
-static void check_bindings(const struct frame *frame, const struct pass *pass,
-                           const struct shader_program *shader, const struct gpu_program *program)
+const char *pass_find_undeclared(const struct pass *pass, const struct gpu_program *program)
 {
     struct gpu_program_bindings bound;
     if (!gpu_program_take_bindings(program, &bound))
-        return;
+        return NULL;
     struct gpu_program_bindings declared = slots_of(pass->reads | pass->writes);
     for (uint32_t i = 0; i < RESOURCE_COUNT; i++) {
         const struct resource_row *row = &resource_rows[i];
-        if (!(bound.storage & ~declared.storage & row->storage) &&
-            !(bound.units & ~declared.units & row->units) &&
-            !(bound.images & ~declared.images & row->images))
-            continue;
-        log_write(LOG_ERROR, "pass_undeclared shader=%s resource=%s", shader->path, row->name);
-        gpu_count_error(frame->gpu);
+        if ((bound.storage & ~declared.storage & row->storage) ||
+            (bound.units & ~declared.units & row->units) ||
+            (bound.images & ~declared.images & row->images))
+            return row->name;
     }
+    return NULL;
 }
 
-// The view's own buffers that a pass declares. Two of them may share a slot.
+// The view's own buffers that a pass declares.
 static void bind_buffers(const struct frame *frame, const struct pass *pass)
 {
     uint32_t declared = pass->reads | pass->writes;
@@ -122,8 +120,11 @@ const struct gpu_program *pass_program(const struct frame *frame, const struct p
     shader_program_write_defines(shader, frame->plan, defines);
     const struct gpu_program *program =
         gpu_program_get(frame->gpu, shader->path, defines, out_error);
-    if (program)
-        check_bindings(frame, pass, shader, program);
+    const char *undeclared = program ? pass_find_undeclared(pass, program) : NULL;
+    if (undeclared) {
+        log_write(LOG_ERROR, "pass_undeclared shader=%s resource=%s", shader->path, undeclared);
+        gpu_count_error(frame->gpu);
+    }
     return program;
 }
 

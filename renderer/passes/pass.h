@@ -70,9 +70,13 @@ void shader_program_write_defines(const struct shader_program *program,
                                   const struct frame_plan *plan,
                                   char out_defines[PROGRAM_DEFINES_BYTES]);
 
+// The name of a resource that a program binds, as the driver sees it, and its pass does not
+// declare. NULL if there is none, or if the program has been asked about since it was built.
+const char *pass_find_undeclared(const struct pass *pass, const struct gpu_program *program);
+
 // The pass's program for the frame's plan. Once per build it is compared with what the pass
-// declares, as the driver sees it: what is undeclared is logged and counts as a GL error, so that
-// declarations cannot drift from the shaders. NULL with a message if the shader fails.
+// declares: what is undeclared is logged and counts as a GL error, so that declarations cannot
+// drift from the shaders. NULL with a message if the shader fails.
 const struct gpu_program *pass_program(const struct frame *frame, const struct pass *pass,
                                        uint32_t number, struct error *out_error);
 

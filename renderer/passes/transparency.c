@@ -9,13 +9,12 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
     struct view *view = frame->view;
     uint32_t width = frame->plan->width, height = frame->plan->height;
     struct gpu_buffer *fragments = view->buffers[RESOURCE_FRAGMENTS];
-    struct gpu_buffer *tiles = view->buffers[RESOURCE_TRANSPARENT_TILES];
     const struct gpu_program *programs[PROGRAM_COUNT];
     if (!pass_programs(frame, pass, programs, out_error))
         return false;
     gpu_buffer_clear(fragments);
-    const uint32_t counts[4] = {0, width * height * BLENDED_PER_PIXEL, 0, 0};
-    gpu_buffer_write(fragments, 0, sizeof(counts), counts);
+    const uint32_t head[8] = {0, width * height * BLENDED_PER_PIXEL, 0, 0, 0, 1, 1, 0};
+    gpu_buffer_write(fragments, 0, sizeof(head), head);
     gpu_begin_raster(frame->gpu, &(struct gpu_raster_params){
                                      .framebuffer = view->list_framebuffer,
                                      .width = width,
@@ -27,14 +26,12 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
     gpu_barrier(frame->gpu);
     if (frame->params->debug_view == DEBUG_VIEW_TILE_CLASSES)
         return true; // shows where layers are, not how they look
-    static const uint32_t no_groups[4] = {0, 1, 1, 0};
-    gpu_buffer_write(tiles, 0, sizeof(no_groups), no_groups);
     uint32_t tile_count =
         ((width + GROUP_EDGE - 1) / GROUP_EDGE) * ((height + GROUP_EDGE - 1) / GROUP_EDGE);
     gpu_dispatch(frame->gpu, programs[PROGRAM_TILES],
                  (tile_count + LINEAR_GROUP - 1) / LINEAR_GROUP, 1, 1);
     gpu_barrier(frame->gpu);
-    gpu_dispatch_indirect(frame->gpu, programs[PROGRAM_SHADE], tiles, 0);
+    gpu_dispatch_indirect(frame->gpu, programs[PROGRAM_SHADE], fragments, 4 * sizeof(uint32_t));
     return true;
 }
 
@@ -48,7 +45,7 @@ const struct pass transparency_pass = {
              RESOURCE(IRRADIANCE) | RESOURCE(LIGHT_MASKS) | RESOURCE(RADIANCE) |
              RESOURCE(ENVIRONMENT) | RESOURCE(GEOMETRY) | RESOURCE(LIGHTS) | RESOURCE(MATERIALS) |
              RESOURCE(VOXELS),
-    .writes = RESOURCE(FRAGMENTS) | RESOURCE(RADIANCE) | RESOURCE(TRANSPARENT_TILES),
+    .writes = RESOURCE(FRAGMENTS) | RESOURCE(RADIANCE),
     .program_count = PROGRAM_COUNT,
     .programs = {{"visibility/visibility", 0, TEXTURE_SWITCHES,
                   "ALPHA_MASK 0\nSHADOW_VIEW 0\nLIST 1\n"},

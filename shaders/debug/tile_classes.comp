@@ -8,13 +8,8 @@
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 #if LAYERS
-layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
-{
-    uint fragment_count;    // rasterised
-    uint fragment_capacity; // size of the pool
-    uint fragment_unused[2];
-    uint fragment_words[]; // head of each pixel's list, 0: empty
-};
+#define FRAGMENTS_ACCESS readonly
+#include "lib/fragments.glsl"
 #endif
 
 const uint CLASS_MATTE = 1u;
@@ -35,7 +30,7 @@ uint pixel_classes(uvec2 pixel, surface s)
     if (s.shading != SHADE_BACKGROUND && any(greaterThan(s.emission, vec3(0.0))))
         classes = CLASS_EMISSIVE;
 #if LAYERS
-    if (fragment_words[pixel_index(pixel)] != 0u)
+    if (fragment_words[head_index(pixel)] != 0u)
         classes |= CLASS_TRANSPARENT;
 #endif
     return classes;

@@ -5,32 +5,17 @@
 // A layer covers `alpha` of the pixel. Its diffuse part transmits the fraction `transmission`
 // unscattered, tinted by base colour (KHR_materials_transmission, thin-walled) and absorbed along
 // its thickness (KHR_materials_volume); its specular part reflects.
-#define CELLS_ACCESS readonly
+#define CELLS_ACCESS     readonly
+#define FRAGMENTS_ACCESS readonly
 #include "lib/geometry.glsl"
 #include "lib/lighting.glsl"
 #include "lib/cache_lookup.glsl"
 #include "lib/environment.glsl"
+#include "lib/fragments.glsl"
 #include "lib/specular_cone.glsl"
 #include "lib/radiance_buffer.glsl"
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
-
-layout(std430, binding = BIND_FRAGMENTS) readonly buffer fragment_storage
-{
-    uint fragment_count;    // rasterised
-    uint fragment_capacity; // size of the pool
-    uint fragment_unused[2];
-    uint fragment_words[];
-};
-
-layout(std430, binding = BIND_TILES) readonly buffer tile_storage
-{
-    uint tile_count; // groups in x of the indirect dispatch; then y and z
-    uint tile_groups_y;
-    uint tile_groups_z;
-    uint tile_unused;
-    uint tiles[];
-};
 
 // Collects the ids of a pixel's nearest layers, farthest first. Equal depths sort by id, so that
 // the result does not depend on the order of fragments.
@@ -39,10 +24,9 @@ uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
     float distances[MAX_BLENDED_LAYERS];
     uint count = 0u;
     vec3 direction = ray_direction(vec2(pixel));
-    uint pixels = frame.render_size.x * frame.render_size.y;
-    uint slot = fragment_words[pixel.y * frame.render_size.x + pixel.x];
+    uint slot = fragment_words[head_index(pixel)];
     while (slot != 0u) {
-        uint base = pixels + 2u * (slot - 1u);
+        uint base = fragment_index(slot - 1u);
         uint id = fragment_words[base + 1u];
         slot = fragment_words[base];
         triangle t = fetch_triangle(id, frame.eye);
@@ -131,7 +115,7 @@ vec3 refracted_light(surface s, transparent_layer through)
 
 void main()
 {
-    uint tile = tiles[gl_WorkGroupID.x];
+    uint tile = fragment_words[tile_index(gl_WorkGroupID.x)];
     uvec2 pixel = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE + gl_LocalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.render_size)))
         return;

@@ -28,26 +28,18 @@ void test_alpha()
 #endif
 
 #if LIST
-layout(early_fragment_tests) in;
+#include "lib/fragments.glsl"
 
-layout(std430, binding = BIND_FRAGMENTS) buffer fragment_storage
-{
-    // `fragment_words`: head of each pixel's list (0: empty), then fragments: next + 1, visibility
-    // id.
-    uint fragment_count;    // rasterised
-    uint fragment_capacity; // size of the pool
-    uint fragment_unused[2];
-    uint fragment_words[];
-};
+layout(early_fragment_tests) in;
 
 void append(uint id)
 {
-    uint pixel = uint(gl_FragCoord.y) * frame.render_size.x + uint(gl_FragCoord.x);
     uint slot = atomicAdd(fragment_count, 1u);
     if (slot >= fragment_capacity)
         return;
-    uint base = frame.render_size.x * frame.render_size.y + 2u * slot;
-    fragment_words[base] = atomicExchange(fragment_words[pixel], slot + 1u);
+    uint base = fragment_index(slot);
+    uint head = head_index(uvec2(gl_FragCoord.xy));
+    fragment_words[base] = atomicExchange(fragment_words[head], slot + 1u);
     fragment_words[base + 1u] = id;
 }
 #elif !SHADOW_VIEW

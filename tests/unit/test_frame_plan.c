@@ -340,7 +340,6 @@ static void buffers_take_memory_only_where_used(void **state)
         void (*change)(struct situation *it); // that calls for it
     } rows[] = {
         {RESOURCE_FRAGMENTS, glass_is_in_view},
-        {RESOURCE_TRANSPARENT_TILES, glass_is_in_view},
     };
     struct situation it;
     struct frame_plan plan;

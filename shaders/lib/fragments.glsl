@@ -1,0 +1,38 @@
+// Lists of the transparent layers of each pixel, and of the tiles that hold any, in one buffer: a
+// compute shader has 16 at most, and that which shades layers needs as many.
+#include "lib/frame.glsl"
+
+#ifndef FRAGMENTS_ACCESS
+#define FRAGMENTS_ACCESS
+#endif
+
+layout(std430, binding = BIND_FRAGMENTS) FRAGMENTS_ACCESS buffer fragment_storage
+{
+    uint fragment_count;    // rasterised
+    uint fragment_capacity; // size of the pool
+    uint fragment_unused[2];
+    uint tile_count; // groups in x of the indirect dispatch; then y and z
+    uint tile_groups_y;
+    uint tile_groups_z;
+    uint tile_unused;
+    // Head of each pixel's list (0: empty, else the number of a fragment + 1); tiles with layers
+    // (row * 65536 + column); fragments: the next one + 1, and the visibility id.
+    uint fragment_words[];
+};
+
+uint head_index(uvec2 pixel)
+{
+    return pixel.y * frame.render_size.x + pixel.x;
+}
+
+uint tile_index(uint number)
+{
+    return frame.render_size.x * frame.render_size.y + number;
+}
+
+// Of a tile number beyond all tiles: where fragments begin.
+uint fragment_index(uint number)
+{
+    uvec2 tiles = (frame.render_size + GROUP_EDGE - 1u) / GROUP_EDGE;
+    return tile_index(tiles.x * tiles.y) + 2u * number;
+}
