@@ -54,7 +54,9 @@ export class App {
     this.shownHeader = null;
     /** @type {any} of this connection */
     this.newestStats = null;
-    this.editor = new Editor(this.connection, this.document, this.timer, (error) => this.#refused(error));
+    this.editor = new Editor(this.connection, this.document, this.timer, (error) =>
+      this.#refused(error),
+    );
     this.selection = new Selection();
     this.camera = new Camera();
     this.sender = new CameraSender(this.connection, this.camera);
@@ -62,7 +64,9 @@ export class App {
     this.overlay = new Overlay(byId('overlay'));
     this.comparison = new Comparison(byId('comparison-pictures'), byId('comparison'));
     this.measurement = new Measurement(this.connection, document.baseURI);
-    this.view = new ViewControls(byId('stage'), this.connection, (error) => this.toasts.showError(error));
+    this.view = new ViewControls(byId('stage'), this.connection, (error) =>
+      this.toasts.showError(error),
+    );
     /** @type {any} the server's description of itself */
     this.hello = null;
     this.clientId = 0;
@@ -95,13 +99,20 @@ export class App {
   /** @param {string} group @param {number} [id] */
   target(group, id) {
     return {
-      get: (/** @type {string} */ name) => this.document.find(group, id)?.[name] ?? this.#fallback(group, name),
-      set: (/** @type {string} */ name, /** @type {any} */ value, /** @type {boolean} */ transient) =>
-        this.editor.update(group, id, { [name]: value }, transient),
+      get: (/** @type {string} */ name) =>
+        this.document.find(group, id)?.[name] ?? this.#fallback(group, name),
+      set: (
+        /** @type {string} */ name,
+        /** @type {any} */ value,
+        /** @type {boolean} */ transient,
+      ) => this.editor.update(group, id, { [name]: value }, transient),
     };
   }
 
-  /** Adds a light where it is seen, above the middle, and as strong as the scene is large. @param {string} type */
+  /**
+   * Adds a light where it is seen, above the middle, and as strong as the scene is large.
+   * @param {string} type
+   */
   async addLight(type) {
     const { center, radius } = this.document.ball;
     const position = add(center, [0, radius * 0.3, 0]);
@@ -140,8 +151,12 @@ export class App {
   #bindConnection() {
     const { connection } = this;
     connection.addEventListener('state', () => this.#showState());
-    connection.addEventListener('hello', (event) => this.#greet(/** @type {CustomEvent} */ (event).detail));
-    connection.addEventListener('frame', (event) => this.picture.show(/** @type {CustomEvent} */ (event).detail));
+    connection.addEventListener('hello', (event) =>
+      this.#greet(/** @type {CustomEvent} */ (event).detail),
+    );
+    connection.addEventListener('frame', (event) =>
+      this.picture.show(/** @type {CustomEvent} */ (event).detail),
+    );
     connection.addEventListener('notification', (event) => {
       const { method, params } = /** @type {CustomEvent} */ (event).detail;
       if (method === 'stats') this.#takeStats(params);
@@ -286,14 +301,22 @@ export class App {
       getSpeed: () => this.document.ball.radius / WALK_SECONDS,
       onClick: (x, y) => this.#pick(x, y),
     });
-    input.addEventListener('keydown', (/** @type {KeyboardEvent} */ event) => this.#stageKey(event));
-    this.picture.addEventListener('presented', (event) => this.#presented(/** @type {CustomEvent} */ (event).detail));
-    this.picture.addEventListener('skipped', (event) => this.#acknowledge(/** @type {CustomEvent} */ (event).detail.header));
+    input.addEventListener('keydown', (/** @type {KeyboardEvent} */ event) =>
+      this.#stageKey(event),
+    );
+    this.picture.addEventListener('presented', (event) =>
+      this.#presented(/** @type {CustomEvent} */ (event).detail),
+    );
+    this.picture.addEventListener('skipped', (event) =>
+      this.#acknowledge(/** @type {CustomEvent} */ (event).detail.header),
+    );
     this.overlay.addEventListener('light', (event) => {
       const light = this.document.find('light', /** @type {CustomEvent} */ (event).detail);
       if (light) this.selection.choose({ lightId: light.id, nodeId: light.node });
     });
-    this.overlay.addEventListener('drag', (event) => this.#drag(/** @type {CustomEvent} */ (event).detail));
+    this.overlay.addEventListener('drag', (event) =>
+      this.#drag(/** @type {CustomEvent} */ (event).detail),
+    );
     this.camera.addEventListener('changed', () => this.viewTab.refresh());
     this.view.addEventListener('changed', () => {
       byId('tool-fly').setAttribute('aria-pressed', String(this.view.mode === 'fly'));
@@ -308,7 +331,8 @@ export class App {
   }
 
   /**
-   * Records which camera the shown frame is of. A camera that changed nothing came without a frame, in the statistics.
+   * Records which camera the shown frame is of. A camera that changed nothing came without a frame,
+   * in the statistics.
    */
   #noteRevision() {
     const { shownHeader: shown, newestStats: stats } = this;
@@ -324,7 +348,9 @@ export class App {
     byId('stage').dataset.converged = String(header.converged);
     this.shownHeader = header;
     this.#noteRevision();
-    const rows = this.parameters('view').find((/** @type {any} */ row) => row.name === 'quality')?.values;
+    const rows = this.parameters('view').find(
+      (/** @type {any} */ row) => row.name === 'quality',
+    )?.values;
     this.badge.show(header, this.view.rung || (rows?.[header.quality] ?? ''));
     this.overlay.pose = this.sender.poseOf(header.cameraRevision);
     this.overlay.aspect = header.width / header.height;
@@ -403,7 +429,9 @@ export class App {
     const offset = mapDirection(world, anchorNode ?? [0, 0, 0]);
     const shift = subtract(subtract(position, offset), world[3]);
     const parentShift =
-      node.parent === null ? shift : unmapDirection(this.document.worldFromNode(node.parent), shift);
+      node.parent === null
+        ? shift
+        : unmapDirection(this.document.worldFromNode(node.parent), shift);
     if (!parentShift) return;
     const translation = add(node.translation, parentShift);
     this.editor.update('node', node.id, { translation }, !isLast);

@@ -1,5 +1,6 @@
-// ./dev accuracy: measures scenes by voxcast accuracy, each in a folder of its own, where a run that was stopped goes
-// on, and writes docs/accuracy.md and docs/accuracy/figures.json of what is there.
+// ./dev accuracy: measures scenes by voxcast accuracy, each in a folder of its own, where a run
+// that was stopped goes on, and writes docs/accuracy.md and docs/accuracy/figures.json of what is
+// there.
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { availableParallelism, cpus } from 'node:os';
@@ -18,21 +19,22 @@ const SCENES_FOLDER = process.env.VOXCAST_SCENES || join(ROOT, '../shared/scenes
 
 const USAGE = `usage: ./dev accuracy [OPTIONS]
 
-Measures every scene by voxcast accuracy and writes docs/accuracy.md, and for the test that judges the presets
-docs/accuracy/figures.json. The machine should have nothing else to do.
+Measures every scene by voxcast accuracy and writes docs/accuracy.md, and for the test that judges
+the presets docs/accuracy/figures.json. The machine should have nothing else to do.
 What has been measured by the same program is kept; a run that was stopped goes on.
 
   --scenes A,B     only these: ${SCENES.map(({ name }) => name).join(', ')}
   --size WxH       of the images (default 640x360)
   --noise X        of the reference image: standard error of pixels over the mean (default 0.005)
-  --samples N      a pixel of the reference image, in scenes with caustics, whose noise falls too slowly (default 16384)
+  --samples N      a pixel of the reference image, in scenes with caustics, whose noise falls too
+                   slowly (default 16384)
   --ladder NAME    quick, full or a file (default full)
   --frames N       of a moving camera for each setting (default 12)
   --out DIR        where measurements are kept (default build/accuracy)
   --docs DIR       where page and figures are written (default docs)
   --page-only      measure nothing; write page and figures of what is there
-Scenes that are not shipped are read from the folder VOXCAST_SCENES, or else ../shared/scenes; what is not there is
-left out.
+Scenes that are not shipped are read from the folder VOXCAST_SCENES, or else ../shared/scenes; what
+is not there is left out.
 `;
 
 const fail = (message, status = 1) => {
@@ -65,7 +67,14 @@ function readOptions() {
 function chooseScenes(names) {
   return names.split(',').map((name) => {
     const scene = SCENES.find((one) => one.name === name);
-    return scene ?? fail(`--scenes: there is no scene "${name}"; there are ${SCENES.map((one) => one.name).join(', ')}`, 2);
+    return (
+      scene ??
+      fail(
+        `--scenes: there is no scene "${name}"; there are ` +
+          `${SCENES.map((one) => one.name).join(', ')}`,
+        2,
+      )
+    );
   });
 }
 
@@ -84,7 +93,9 @@ function measure(scene, source, options, folder) {
   const truth = scene.hasCaustics ? ['--reference-spp', samples] : ['--until-noise', noise];
   const chosen = ['--size', size, ...truth, '--ladder', ladder, '--frames', frames];
   const program = process.env.VOXCAST ?? join(ROOT, 'build/release/bin/voxcast');
-  const { status, error } = spawnSync(program, ['accuracy', source, '--out', folder, ...chosen], { stdio: 'inherit' });
+  const { status, error } = spawnSync(program, ['accuracy', source, '--out', folder, ...chosen], {
+    stdio: 'inherit',
+  });
   if (error) fail(`cannot run ${program}: ${error.message}`);
   return status === 0;
 }
@@ -132,10 +143,16 @@ const scenes = chooseScenes(options.scenes);
 const failed = [];
 for (const scene of options['page-only'] ? [] : scenes) {
   const source = sourceOf(scene);
-  if (!source) process.stderr.write(`accuracy: ${scene.name} is left out: ${SCENES_FOLDER} has no ${scene.path}\n`);
+  if (!source)
+    process.stderr.write(
+      `accuracy: ${scene.name} is left out: ${SCENES_FOLDER} has no ${scene.path}\n`,
+    );
   else if (!measure(scene, source, options, join(options.out, scene.name))) failed.push(scene.name);
 }
-const found = scenes.map((scene) => ({ scene, run: loadRun(scene, join(options.out, scene.name)) }));
+const found = scenes.map((scene) => ({
+  scene,
+  run: loadRun(scene, join(options.out, scene.name)),
+}));
 const runs = found.flatMap(({ run }) => run ?? []);
 if (runs.length === 0) fail(`nothing has been measured in ${options.out}`);
 mkdirSync(join(options.docs, 'accuracy'), { recursive: true });

@@ -3,22 +3,34 @@ import '../../web_client/report/error_chart.js';
 
 const { errorOf } = globalThis.errorChart;
 
-/** Steps of each setting, from cheap to dear; null is the default, where it has a place among them. */
-const STEPS = /** @type {Record<string, { title: string, values: (string | null)[], isDefault?: string }>} */ ({
-  voxel_resolution: { title: 'voxels along an edge', values: ['64', '128', '256'] },
-  gather_mode: { title: 'where cones start', values: ['cache', 'half', 'pixel'] },
-  cone_set: { title: 'cones', values: ['5', '6', '16', '32'] },
-  cone_step: { title: 'length of a cone’s steps', values: ['2', '0.5', '0.25'] },
-  bounces: { title: 'bounces', values: ['1', '2', '4', null], isDefault: 'unlimited' },
-  clip_levels: { title: 'levels of the clipmap', values: ['1', '2', '4', '6'] },
-  voxel_directions: { title: 'directions of a voxel', values: ['isotropic', null], isDefault: 'anisotropic' },
-  scale: { title: 'resolution over that shown', values: ['0.5', null, '2'], isDefault: '1' },
-});
+/**
+ * Steps of each setting, from cheap to dear; null is the default, where it has a place among them.
+ */
+const STEPS =
+  /** @type {Record<string, { title: string, values: (string | null)[], isDefault?: string }>} */ ({
+    voxel_resolution: { title: 'voxels along an edge', values: ['64', '128', '256'] },
+    gather_mode: { title: 'where cones start', values: ['cache', 'half', 'pixel'] },
+    cone_set: { title: 'cones', values: ['5', '6', '16', '32'] },
+    cone_step: { title: 'length of a cone’s steps', values: ['2', '0.5', '0.25'] },
+    bounces: { title: 'bounces', values: ['1', '2', '4', null], isDefault: 'unlimited' },
+    clip_levels: { title: 'levels of the clipmap', values: ['1', '2', '4', '6'] },
+    voxel_directions: {
+      title: 'directions of a voxel',
+      values: ['isotropic', null],
+      isDefault: 'anisotropic',
+    },
+    scale: { title: 'resolution over that shown', values: ['0.5', null, '2'], isDefault: '1' },
+  });
 
 /** All that a configuration is, as text by key. */
 function factsOf({ method, settings }) {
   const { gi_method: _method, ...set } = settings.set;
-  return { method, preset: settings.preset, ...(settings.scale === 1 ? {} : { scale: String(settings.scale) }), ...set };
+  return {
+    method,
+    preset: settings.preset,
+    ...(settings.scale === 1 ? {} : { scale: String(settings.scale) }),
+    ...set,
+  };
 }
 
 const keyOf = (facts) => JSON.stringify(Object.entries(facts).sort(([a], [b]) => (a < b ? -1 : 1)));
@@ -39,7 +51,8 @@ function changesOf(before, after) {
 
 /**
  * @param {any[]} rungs the configurations of one run
- * @returns {{ key: string, from: string, to: string, changes: any }[]} one for each pair of configurations
+ * @returns {{ key: string, from: string, to: string, changes: any }[]} one for each pair of
+ *   configurations
  */
 export function stepsOf(rungs) {
   const byFacts = new Map(rungs.map((rung) => [keyOf(factsOf(rung)), rung]));
@@ -48,22 +61,31 @@ export function stepsOf(rungs) {
     for (const rung of rungs) {
       const { [key]: value = null, ...others } = factsOf(rung);
       const at = values.indexOf(value);
-      const withValue = (other) => byFacts.get(keyOf(other === null ? others : { ...others, [key]: other }));
+      const withValue = (other) =>
+        byFacts.get(keyOf(other === null ? others : { ...others, [key]: other }));
       const next = at < 0 ? undefined : values.slice(at + 1).find(withValue);
       if (next === undefined) continue;
-      steps.push({ key, from: value ?? isDefault, to: next ?? isDefault, changes: changesOf(rung, withValue(next)) });
+      steps.push({
+        key,
+        from: value ?? isDefault,
+        to: next ?? isDefault,
+        changes: changesOf(rung, withValue(next)),
+      });
     }
   return steps;
 }
 
-const percent = (value) => `${value > 0 ? '+' : value < 0 ? '−' : ''}${Math.abs(100 * value).toFixed(0)} %`;
+const percent = (value) =>
+  `${value > 0 ? '+' : value < 0 ? '−' : ''}${Math.abs(100 * value).toFixed(0)} %`;
 
 /** Median, and the range where there are several. */
 function summary(values) {
   const known = values.filter((value) => value !== null).sort((a, b) => a - b);
   if (known.length === 0) return '–';
   const median = known[known.length >> 1];
-  return known.length === 1 ? percent(median) : `${percent(median)} (${percent(known[0])} to ${percent(known.at(-1))})`;
+  return known.length === 1
+    ? percent(median)
+    : `${percent(median)} (${percent(known[0])} to ${percent(known.at(-1))})`;
 }
 
 /** A table of all steps, over all runs. @param {any[][]} runs @returns {string} Markdown, or "" */
@@ -75,8 +97,14 @@ export function buysTable(runs) {
   }
   if (groups.size === 0) return '';
   const rows = [...groups].map(([name, changes]) => {
-    const cells = ['error', 'indirect', 'frame', 'settled', 'memory'].map((part) => summary(changes.map((change) => change[part])));
+    const cells = ['error', 'indirect', 'frame', 'settled', 'memory'].map((part) =>
+      summary(changes.map((change) => change[part])),
+    );
     return `| ${name} | ${changes.length} | ${cells.join(' | ')} |`;
   });
-  return ['| step | pairs | LDR-FLIP | of indirect light | frame | until settled | memory |', '|---|---|---|---|---|---|---|', ...rows].join('\n');
+  return [
+    '| step | pairs | LDR-FLIP | of indirect light | frame | until settled | memory |',
+    '|---|---|---|---|---|---|---|',
+    ...rows,
+  ].join('\n');
 }

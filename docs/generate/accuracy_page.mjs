@@ -18,17 +18,26 @@ const WINDOW_WIDTH = 200;
 /** @typedef {{ scene: import('./accuracy_scenes.mjs').Scene, folder: string, results: any }} Run */
 
 const table = (head, rows) =>
-  [`| ${head.join(' | ')} |`, `|${head.map(() => '---').join('|')}|`, ...rows.map((row) => `| ${row.join(' | ')} |`)].join('\n');
+  [
+    `| ${head.join(' | ')} |`,
+    `|${head.map(() => '---').join('|')}|`,
+    ...rows.map((row) => `| ${row.join(' | ')} |`),
+  ].join('\n');
 
 const rungOf = ({ results }, name) => results.rungs.find((rung) => rung.name === name);
 
-/** The configuration whose errors are looked into: the best preset, or whatever is there that errs least. */
+/**
+ * The configuration whose errors are looked into: the best preset, or whatever is there that errs
+ * least.
+ */
 function bestRung(run) {
   const flip = (rung) => rung.converged?.metrics?.ldr_flip ?? Infinity;
   return rungOf(run, 'final') ?? [...run.results.rungs].sort((a, b) => flip(a) - flip(b))[0];
 }
 
-/** A figure; "~" before it where the reference image's own error is more than a tenth of its error. */
+/**
+ * A figure; "~" before it where the reference image's own error is more than a tenth of its error.
+ */
 function figure(results, part, metric, value) {
   if (typeof value !== 'number') return '–';
   const own = results.noise?.[part]?.[metric]?.reference;
@@ -37,7 +46,9 @@ function figure(results, part, metric, value) {
 }
 
 const energies = (results, part, values) =>
-  ['red', 'green', 'blue'].map((color) => figure(results, part, `energy_${color}`, values?.[`energy_${color}`])).join(' ');
+  ['red', 'green', 'blue']
+    .map((color) => figure(results, part, `energy_${color}`, values?.[`energy_${color}`]))
+    .join(' ');
 
 /** @param {Run} run @param {any} rung */
 function rungRow({ results }, rung, front) {
@@ -56,7 +67,18 @@ function rungRow({ results }, rung, front) {
   ];
 }
 
-const ROW_HEAD = ['setting', 'ms a frame', 'ms to settle', 'MiB', 'LDR-FLIP', 'SSIM', 'relMSE', 'energy R G B', 'indirect energy R G B', 'front'];
+const ROW_HEAD = [
+  'setting',
+  'ms a frame',
+  'ms to settle',
+  'MiB',
+  'LDR-FLIP',
+  'SSIM',
+  'relMSE',
+  'energy R G B',
+  'indirect energy R G B',
+  'front',
+];
 
 /** The presets and the front, and all the rest folded away. */
 function rungTables(run) {
@@ -67,7 +89,10 @@ function rungTables(run) {
   const parts = [rows(sorted.filter(isShown))];
   const others = sorted.filter((rung) => !isShown(rung));
   const meanings = sorted.map((rung) => `- \`${rung.name}\`: ${settingText(rung)}`).join('\n');
-  if (others.length > 0) parts.push(`<details><summary>${others.length} more</summary>\n\n${rows(others)}\n\n</details>`);
+  if (others.length > 0)
+    parts.push(
+      `<details><summary>${others.length} more</summary>\n\n${rows(others)}\n\n</details>`,
+    );
   parts.push(`<details><summary>What the names mean</summary>\n\n${meanings}\n\n</details>`);
   return parts.join('\n\n');
 }
@@ -75,21 +100,29 @@ function rungTables(run) {
 /** What is known of the reference image's own error, and by which measures it is too much. */
 function noiseText({ results }) {
   const { reference } = results.setup;
-  const total = typeof reference.noise === 'number' ? `${short(100 * reference.noise)} %` : 'not known';
+  const total =
+    typeof reference.noise === 'number' ? `${short(100 * reference.noise)} %` : 'not known';
   const tooMuch = [
     ['metrics', 'all light'],
     ['indirect', 'indirect light'],
   ].flatMap(([part, of]) => {
-    const titles = results.metrics.filter(({ name }) => results.noise?.[part]?.[name]?.enough === false).map(({ title }) => title);
+    const titles = results.metrics
+      .filter(({ name }) => results.noise?.[part]?.[name]?.enough === false)
+      .map(({ title }) => title);
     return titles.length > 0 ? `${titles.join(', ')} of ${of}` : [];
   });
   const own = results.noise?.metrics?.ldr_flip;
-  const flip = own ? ` By LDR-FLIP it errs by ${short(own.reference)} itself, and the smallest error shown is ${short(own.smallest)}.` : '';
+  const flip = own
+    ? ` By LDR-FLIP it errs by ${short(own.reference)} itself, and the smallest error shown is ` +
+      `${short(own.smallest)}.`
+    : '';
   const verdict =
     tooMuch.length === 0
       ? 'By every measure that is less than a tenth of the smallest error.'
-      : `That is more than a tenth of the smallest error by these measures: ${tooMuch.join('; ')}. Figures with “~” are no surer.`;
-  return `Noise of the reference: ${total} (standard error of pixels over the mean).${flip} ${verdict}`;
+      : 'That is more than a tenth of the smallest error by these measures: ' +
+        `${tooMuch.join('; ')}. Figures with “~” are no surer.`;
+  const text = `${total} (standard error of pixels over the mean)`;
+  return `Noise of the reference: ${text}.${flip} ${verdict}`;
 }
 
 /** Writes the images of a scene; returns the Markdown that shows them. */
@@ -98,20 +131,34 @@ function scenePictures(run, folder) {
   const best = bestRung(run);
   const cheap = rungOf(run, 'interactive') ?? best;
   const read = (file) => readPng(join(run.folder, file));
-  const [truth, picture, map] = [read('reference.png'), read(best.pictures.converged), read(best.pictures.error)];
-  const small = [truth, read(cheap.pictures.converged), picture, map].map((one) => resized(one, OVERVIEW_WIDTH));
+  const [truth, picture, map] = [
+    read('reference.png'),
+    read(best.pictures.converged),
+    read(best.pictures.error),
+  ];
+  const small = [truth, read(cheap.pictures.converged), picture, map].map((one) =>
+    resized(one, OVERVIEW_WIDTH),
+  );
   writePng(join(folder, `${scene.name}.png`), tiled([small.slice(0, 2), small.slice(2)]));
   const windows = worstWindows(map);
-  const crops = windows.map((window) => [truth, picture, map].map((one) => resized(cropped(one, window), WINDOW_WIDTH)));
+  const crops = windows.map((window) =>
+    [truth, picture, map].map((one) => resized(cropped(one, window), WINDOW_WIDTH)),
+  );
   writePng(join(folder, `${scene.name}-errors.png`), tiled(crops));
   writeFileSync(join(folder, `${scene.name}.svg`), chartSvg(results, FIRST_CHOICE));
-  const places = windows.map(({ x, y, width, height, error }) => `LDR-FLIP ${short(error)} around (${x + (width >> 1)}, ${y + (height >> 1)})`);
+  const places = windows.map(
+    ({ x, y, width, height, error }) =>
+      `LDR-FLIP ${short(error)} around (${x + (width >> 1)}, ${y + (height >> 1)})`,
+  );
   return [
     `![Error against time of ${scene.title}](accuracy/${scene.name}.svg)`,
     `![Reference image, ${cheap.name}, ${best.name} and its errors](accuracy/${scene.name}.png)`,
-    `Above: the reference image and \`${cheap.name}\`; below: \`${best.name}\` and where it errs (LDR-FLIP, black 0 to pale yellow 1).`,
-    `![The largest errors: reference image, ${best.name}, error](accuracy/${scene.name}-errors.png)`,
-    `The largest errors of \`${best.name}\` (reference image, image, error), from the worst: ${places.join('; ')}.`,
+    `Above: the reference image and \`${cheap.name}\`; below: \`${best.name}\` and where it ` +
+      'errs (LDR-FLIP, black 0 to pale yellow 1).',
+    `![The largest errors: reference image, ${best.name}, ` +
+      `error](accuracy/${scene.name}-errors.png)`,
+    `The largest errors of \`${best.name}\` (reference image, image, error), from the worst: ` +
+      `${places.join('; ')}.`,
   ].join('\n\n');
 }
 
@@ -130,7 +177,9 @@ function sceneSection(run, folder) {
 /** Error of each preset in each scene. */
 function overview(runs) {
   const rows = runs.map((run) => {
-    const flips = PRESETS.map((name) => figure(run.results, 'metrics', 'ldr_flip', rungOf(run, name)?.converged.metrics.ldr_flip));
+    const flips = PRESETS.map((name) =>
+      figure(run.results, 'metrics', 'ldr_flip', rungOf(run, name)?.converged.metrics.ldr_flip),
+    );
     const { metrics, indirect } = bestRung(run).converged;
     const { noise } = run.results.setup.reference;
     return [
@@ -141,41 +190,57 @@ function overview(runs) {
       typeof noise === 'number' ? `${short(100 * noise)} %` : '–',
     ];
   });
-  return table(['scene', ...PRESETS, 'SSIM of final', 'indirect energy of final', 'noise of the reference'], rows);
+  return table(
+    ['scene', ...PRESETS, 'SSIM of final', 'indirect energy of final', 'noise of the reference'],
+    rows,
+  );
 }
 
 const INTRO = `<!-- Written by ./dev accuracy; the last chapter is kept in accuracy/causes.md. -->
 # Accuracy
 
-How far images are from the reference image, and what less error costs. The reference image is the path tracer's, of
-the same scene, camera and size. Each setting is measured in a scene that has just been loaded: the median frame of
-a moving camera, the time until the image has converged, and the error of the converged image.
+How far images are from the reference image, and what less error costs. The reference image is the
+path tracer's, of the same scene, camera and size. Each setting is measured in a scene that has just
+been loaded: the median frame of a moving camera, the time until the image has converged, and the
+error of the converged image.
 
-**LDR-FLIP** is that of the displayed image at one fixed exposure, 0 to 1: for scale, an image uniformly 10 % too
-bright scores about 0.15, one 2 % too bright 0.05. **Energy** is the mean of a channel over the reference image's: 1 is
-right. **Indirect** is without the light of emitters that was reflected once. **Front**: no other setting is both
-faster and less wrong; its names are bold. **~** before a figure: the reference image's own error, by the same measure,
-is more than a tenth of the error shown.`;
+**LDR-FLIP** is that of the displayed image at one fixed exposure, 0 to 1: for scale, an image
+uniformly 10 % too bright scores about 0.15, one 2 % too bright 0.05. **Energy** is the mean of a
+channel over the reference image's: 1 is right. **Indirect** is without the light of emitters that
+was reflected once. **Front**: no other setting is both faster and less wrong; its names are bold.
+**~** before a figure: the reference image's own error, by the same measure, is more than a tenth of
+the error shown.`;
 
-const PRESETS_INTRO = `How much more each preset errs than the best setting that is as fast and has settled as soon. A
-test reads these figures from [accuracy/figures.json](accuracy/figures.json) and allows up to
-${(100 * (MAX_EXCESS - 1)).toFixed(0)} % in the built-in scenes; what is beyond is bold.`;
+const PRESETS_INTRO = `How much more each preset errs than the best setting that is as fast and has
+settled as soon. A test reads these figures from [accuracy/figures.json](accuracy/figures.json) and
+allows up to ${(100 * (MAX_EXCESS - 1)).toFixed(0)} % in the built-in scenes; what is beyond is
+bold.`;
 
 /**
  * Writes accuracy.md and its images.
- * @param {{ runs: Run[], missing: import('./accuracy_scenes.mjs').Scene[], machine: string, causes: string, folder: string }} params
- *   `folder`: that of the page; images go into its folder "accuracy"
+ * @param {{ runs: Run[], missing: import('./accuracy_scenes.mjs').Scene[], machine: string, causes:
+ *   string, folder: string }} params `folder`: that of the page; images go into its folder
+ *   "accuracy"
  */
 export function writePage({ runs, missing, machine, causes, folder }) {
   const buys = buysTable(runs.map(({ results }) => results.rungs));
   const parts = [INTRO, machine, '## All scenes', 'LDR-FLIP of each preset.', overview(runs)];
-  if (missing.length > 0) parts.push(`Not measured: ${missing.map(({ title }) => title).join(', ')}.`);
-  parts.push('## Presets and the front', PRESETS_INTRO, presetTable(runs.map((run) => ({ title: run.scene.title, ...sceneFigures(run) }))));
-  parts.push('## Scene by scene', ...runs.map((run) => sceneSection(run, join(folder, 'accuracy'))));
+  if (missing.length > 0)
+    parts.push(`Not measured: ${missing.map(({ title }) => title).join(', ')}.`);
+  parts.push(
+    '## Presets and the front',
+    PRESETS_INTRO,
+    presetTable(runs.map((run) => ({ title: run.scene.title, ...sceneFigures(run) }))),
+  );
+  parts.push(
+    '## Scene by scene',
+    ...runs.map((run) => sceneSection(run, join(folder, 'accuracy'))),
+  );
   parts.push('## What each setting buys');
   parts.push(
     buys
-      ? 'Pairs of settings that differ in one step, over all scenes: the median change, and the least and the most. Less error is better; so is less time.'
+      ? 'Pairs of settings that differ in one step, over all scenes: the median change, and ' +
+          'the least and the most. Less error is better; so is less time.'
       : 'The sweep that was measured has no settings that differ in one step; the full one has.',
   );
   if (buys) parts.push(buys);

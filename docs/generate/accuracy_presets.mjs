@@ -1,7 +1,11 @@
-// Whether the presets of the quality table are where measured settings say that they should be: near the Pareto
-// front of error and time. Works on figures as accuracy_figures.mjs records them, never on times taken now.
+// Whether the presets of the quality table are where measured settings say that they should be:
+// near the Pareto front of error and time. Works on figures as accuracy_figures.mjs records them,
+// never on times taken now.
 
-/** @typedef {{ name: string, settings: any, frame_ms: number, settle_ms: number, settled: boolean, metrics: any }} Rung */
+/**
+ * @typedef {{ name: string, settings: any, frame_ms: number, settle_ms: number, settled: boolean,
+ *   metrics: any }} Rung
+ */
 
 export const PRESETS = ['draft', 'interactive', 'high', 'final'];
 
@@ -16,30 +20,41 @@ const flipOf = (rung) => rung.metrics.ldr_flip;
 /** What has not settled takes longer than was waited for. */
 const timeOf = (rung, time) => (time === 'settle_ms' && !rung.settled ? Infinity : rung[time]);
 
-const hasFigures = (rung) => [flipOf(rung), ...TIMES.map((time) => rung[time])].every(Number.isFinite);
-
-/** The configuration that is the preset itself, whatever its name. @param {Rung[]} rungs @returns {Rung | undefined} */
-export const rungOfPreset = (rungs, preset) =>
-  rungs.find(({ settings }) => settings.preset === preset && settings.scale === 1 && Object.keys(settings.set).length === 0);
+const hasFigures = (rung) =>
+  [flipOf(rung), ...TIMES.map((time) => rung[time])].every(Number.isFinite);
 
 /**
- * The point of the front at a preset's time: of the configurations at most as slow, itself included, the one that errs
- * least.
+ * The configuration that is the preset itself, whatever its name.
+ * @param {Rung[]} rungs
+ * @returns {Rung | undefined}
+ */
+export const rungOfPreset = (rungs, preset) =>
+  rungs.find(
+    ({ settings }) =>
+      settings.preset === preset && settings.scale === 1 && Object.keys(settings.set).length === 0,
+  );
+
+/**
+ * The point of the front at a preset's time: of the configurations at most as slow, itself
+ * included, the one that errs least.
  * @param {Rung[]} rungs the configurations of one scene
  * @returns {Rung | undefined} none if the preset has no figures
  */
 export function frontAt(rungs, preset) {
   const own = rungOfPreset(rungs, preset);
   if (!own || !hasFigures(own)) return undefined;
-  const asFast = rungs.filter((rung) => hasFigures(rung) && TIMES.every((time) => timeOf(rung, time) <= timeOf(own, time)));
+  const asFast = rungs.filter(
+    (rung) => hasFigures(rung) && TIMES.every((time) => timeOf(rung, time) <= timeOf(own, time)),
+  );
   return asFast.reduce((best, rung) => (flipOf(rung) < flipOf(best) ? rung : best), own);
 }
 
 /**
  * Each preset in one scene.
  * @param {{ rungs: Rung[] }} scene
- * @returns {{ preset: string, own?: Rung, front?: Rung, excess: number, isNear: boolean }[]} `excess`: the preset's
- *   LDR-FLIP over the front's, 1 on it; infinite where the preset was not measured
+ * @returns {{ preset: string, own?: Rung, front?: Rung, excess: number, isNear: boolean }[]}
+ *   `excess`: the preset's LDR-FLIP over the front's, 1 on it; infinite where the preset was not
+ *   measured
  */
 export function judgePresets({ rungs }) {
   return PRESETS.map((preset) => {
@@ -52,26 +67,43 @@ export function judgePresets({ rungs }) {
 
 /** The figures that a preset is judged by. */
 function judgedText(rung) {
-  const settling = rung.settled ? `${rung.settle_ms} ms to settle` : `not settled after ${rung.settle_ms} ms`;
+  const settling = rung.settled
+    ? `${rung.settle_ms} ms to settle`
+    : `not settled after ${rung.settle_ms} ms`;
   return `LDR-FLIP ${flipOf(rung)}, ${rung.frame_ms} ms a frame, ${settling}`;
 }
 
-/** What is wrong with the presets in one scene, a sentence each. @param {{ name: string, rungs: Rung[] }} scene */
+/**
+ * What is wrong with the presets in one scene, a sentence each.
+ * @param {{ name: string, rungs: Rung[] }} scene
+ */
 export function faultsOf(scene) {
   return judgePresets(scene)
     .filter(({ isNear }) => !isNear)
     .map(({ preset, own, front, excess }) => {
       if (!own) return `${scene.name}: preset ${preset} was not measured`;
       if (!front) return `${scene.name}: preset ${preset} has no figures of error and time`;
-      const [more, allowed] = [excess - 1, MAX_EXCESS - 1].map((part) => `${(100 * part).toFixed(1)} %`);
+      const [more, allowed] = [excess - 1, MAX_EXCESS - 1].map(
+        (part) => `${(100 * part).toFixed(1)} %`,
+      );
       const [mine, other] = [own, front].map((rung) => judgedText(rung));
-      return `${scene.name}: preset ${preset} (${mine}) errs ${more} more than rung ${front.name} (${other}), which is at most as slow; up to ${allowed} is allowed`;
+      return (
+        `${scene.name}: preset ${preset} (${mine}) errs ${more} more than rung ${front.name} ` +
+        `(${other}), which is at most as slow; up to ${allowed} is allowed`
+      );
     });
 }
 
-/** Whether settings beside the presets were measured: without them, any preset is on the front of what there is. */
+/**
+ * Whether settings beside the presets were measured: without them, any preset is on the front of
+ * what there is.
+ */
 export const hasVariations = ({ rungs }) =>
-  rungs.some((rung) => rung.settings.set.gi_method !== 'none' && !PRESETS.some((preset) => rungOfPreset(rungs, preset) === rung));
+  rungs.some(
+    (rung) =>
+      rung.settings.set.gi_method !== 'none' &&
+      !PRESETS.some((preset) => rungOfPreset(rungs, preset) === rung),
+  );
 
 /**
  * Where two quality tables differ, a phrase each; none if they are the same.
@@ -84,11 +116,18 @@ export function tableChanges(recorded, present) {
     union(recorded[preset], present[preset])
       .map((field) => [field, recorded[preset]?.[field], present[preset]?.[field]])
       .filter(([, before, now]) => before !== now)
-      .map(([field, before, now]) => `${preset}.${field}: ${text(before)} when it was measured, ${text(now)} now`),
+      .map(
+        ([field, before, now]) =>
+          `${preset}.${field}: ${text(before)} when it was measured, ${text(now)} now`,
+      ),
   );
 }
 
-/** A table of all presets in all scenes. @param {{ title: string, rungs: Rung[] }[]} scenes @returns {string} Markdown */
+/**
+ * A table of all presets in all scenes.
+ * @param {{ title: string, rungs: Rung[] }[]} scenes
+ * @returns {string} Markdown
+ */
 export function presetTable(scenes) {
   const cell = ({ own, front, excess, isNear }) => {
     if (!own || !front) return '–';
@@ -96,6 +135,8 @@ export function presetTable(scenes) {
     const text = `+${(100 * (excess - 1)).toFixed(1)} % (\`${front.name}\`)`;
     return isNear ? text : `**${text}**`;
   };
-  const rows = scenes.map((scene) => `| ${scene.title} | ${judgePresets(scene).map(cell).join(' | ')} |`);
+  const rows = scenes.map(
+    (scene) => `| ${scene.title} | ${judgePresets(scene).map(cell).join(' | ')} |`,
+  );
   return [`| scene | ${PRESETS.join(' | ')} |`, '|---|---|---|---|---|', ...rows].join('\n');
 }

@@ -13,6 +13,10 @@ const { page, close } = await openBrowser({ width: 1440, height: 900 });
 await page.goto(daemon.http);
 await page.locator('#tab-light').click();
 await page.locator('#stage[data-converged=true]').waitFor({ timeout: LIMIT_MS });
-await page.screenshot({ path: fileURLToPath(new URL('../panel.jpg', import.meta.url)), type: 'jpeg', quality: 85 });
+await page.screenshot({
+  path: fileURLToPath(new URL('../panel.jpg', import.meta.url)),
+  type: 'jpeg',
+  quality: 85,
+});
 await close();
 await stopDaemon(daemon);

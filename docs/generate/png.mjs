@@ -8,7 +8,11 @@ const SIGNATURE = Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]);
 const CHANNELS = /** @type {Record<number, number>} */ ({ 2: 3, 6: 4 }); // by colour type
 
 /** @param {number} width @param {number} height @returns {Picture} black */
-export const makePicture = (width, height) => ({ width, height, rgb: new Uint8Array(3 * width * height) });
+export const makePicture = (width, height) => ({
+  width,
+  height,
+  rgb: new Uint8Array(3 * width * height),
+});
 
 /** Paeth's predictor: of left, above and above left the one nearest to their plane. */
 function paeth(a, b, c) {
@@ -111,7 +115,15 @@ export function writePng(path, picture) {
   header.writeUInt32BE(picture.height, 4);
   header.set([8, 2, 0, 0, 0], 8);
   const data = deflateSync(filter(picture), { level: 9 });
-  writeFileSync(path, Buffer.concat([SIGNATURE, chunk('IHDR', header), chunk('IDAT', data), chunk('IEND', Buffer.alloc(0))]));
+  writeFileSync(
+    path,
+    Buffer.concat([
+      SIGNATURE,
+      chunk('IHDR', header),
+      chunk('IDAT', data),
+      chunk('IEND', Buffer.alloc(0)),
+    ]),
+  );
 }
 
 /** A part of an image. @param {Picture} picture @returns {Picture} */
@@ -124,7 +136,10 @@ export function cropped(picture, { x, y, width, height }) {
   return out;
 }
 
-/** Made `width` wide: pixels are means where it becomes smaller, and repeated where it grows. @returns {Picture} */
+/**
+ * Made `width` wide: pixels are means where it becomes smaller, and repeated where it grows.
+ * @returns {Picture}
+ */
 export function resized(picture, width) {
   const step = picture.width / width;
   const out = makePicture(width, Math.max(1, Math.round(picture.height / step)));
@@ -138,7 +153,8 @@ export function resized(picture, width) {
       const [top, bottom] = span(y, picture.height);
       for (let k = 0; k < 3; k++) {
         let sum = 0;
-        for (let j = top; j < bottom; j++) for (let i = left; i < right; i++) sum += picture.rgb[3 * (j * picture.width + i) + k];
+        for (let j = top; j < bottom; j++)
+          for (let i = left; i < right; i++) sum += picture.rgb[3 * (j * picture.width + i) + k];
         out.rgb[3 * (y * out.width + x) + k] = Math.round(sum / ((right - left) * (bottom - top)));
       }
     }

@@ -39,7 +39,11 @@ function readOptions() {
 const figure = (/** @type {number | null} */ value) =>
   value === null ? '∞' : value === 0 ? '0' : Number(value.toPrecision(3)).toString();
 
-const STATES = /** @type {Record<string, string>} */ ({ holds: '', known: '**known**', fails: '**fails**' });
+const STATES = /** @type {Record<string, string>} */ ({
+  holds: '',
+  known: '**known**',
+  fails: '**fails**',
+});
 
 /** One row for each case and method. */
 function rowsOf(/** @type {any[]} */ runs) {
@@ -60,7 +64,8 @@ function rowsOf(/** @type {any[]} */ runs) {
 
 function pageOf(/** @type {any} */ results) {
   const runs = results.cases;
-  const count = (/** @type {string} */ state) => runs.filter((/** @type {any} */ run) => run.state === state).length;
+  const count = (/** @type {string} */ state) =>
+    runs.filter((/** @type {any} */ run) => run.state === state).length;
   const families = [...new Set(runs.map((/** @type {any} */ run) => run.family))];
   const tables = families.map((family) => {
     const own = runs.filter((/** @type {any} */ run) => run.family === family);
@@ -75,17 +80,21 @@ function pageOf(/** @type {any} */ results) {
   });
   return `# Stability
 
-Small scenes, made in code, that try to break the numbers. Each case states an invariant and a bound; \`./dev stability\`
-runs them all and writes this page, \`voxcast stability\` runs them or one of them and keeps the images, and ctest runs
-a family at a time. After every frame a compute shader looks for infinities and NaN in all floating-point resources: depth,
-G-buffer, radiance, accumulation, voxel radiance, the irradiance cache, shadow views, lights, instances,
-materials, vertices, the environment's harmonics and levels. One of them fails the case, whatever was measured.
+Small scenes, made in code, that try to break the numbers. Each case states an invariant and a
+bound; \`./dev stability\` runs them all and writes this page, \`voxcast stability\` runs them or
+one of them and keeps the images, and ctest runs a family at a time. After every frame a compute
+shader looks for infinities and NaN in all floating-point resources: depth, G-buffer, radiance,
+accumulation, voxel radiance, the irradiance cache, shadow views, lights, instances, materials,
+vertices, the environment's harmonics and levels. One of them fails the case, whatever was
+measured.
 
-Measured by ${results.gl_renderer.replace(/ \(.*/, '')}: ${runs.length} runs, ${count('holds')} within their
-bound, ${count('known')} known to miss it (and held to what stands beside it), ${count('fails')} beyond.
+Measured by ${results.gl_renderer.replace(/ \(.*/, '')}: ${runs.length} runs, ${count('holds')}
+within their bound, ${count('known')} known to miss it (and held to what stands beside it),
+${count('fails')} beyond.
 
-A value of 0 is exact: the same bits. "Of the brightest" is the greatest difference of any channel of any pixel over the
-brightest channel of the expected image. \`reference\` is the path tracer with equal random numbers in both images.
+A value of 0 is exact: the same bits. "Of the brightest" is the greatest difference of any channel
+of any pixel over the brightest channel of the expected image. \`reference\` is the path tracer with
+equal random numbers in both images.
 
 ${tables.join('\n')}`;
 }
@@ -97,7 +106,11 @@ if (options.help) {
 }
 let status = 0;
 if (!options['page-only']) {
-  const run = spawnSync(join(ROOT, 'build/release/bin/voxcast'), ['stability', '--out', options.out], { stdio: 'inherit' });
+  const run = spawnSync(
+    join(ROOT, 'build/release/bin/voxcast'),
+    ['stability', '--out', options.out],
+    { stdio: 'inherit' },
+  );
   status = run.status ?? 1;
 }
 let results;

@@ -1,6 +1,6 @@
-// A client on another machine than the daemon's: connects, and prints the seconds until the first frame has come. Fails
-// unless the frame is an image and /readyz says ready. With --page, a browser that opens the page must show an image,
-// too.
+// A client on another machine than the daemon's: connects, and prints the seconds until the first
+// frame has come. Fails unless the frame is an image and /readyz says ready. With --page, a browser
+// that opens the page must show an image, too.
 // Run: node tests/bare/first_frame.mjs http://127.0.0.1:8080/ [--page]
 import assert from 'node:assert/strict';
 
@@ -21,7 +21,10 @@ async function checkPage(http) {
   const problems = [];
   page.on('pageerror', (error) => problems.push(error.message));
   page.on('requestfailed', (request) => problems.push(`${request.url()} was not loaded`));
-  page.on('response', (response) => response.ok() || problems.push(`${response.url()}: ${response.status()}`));
+  page.on(
+    'response',
+    (response) => response.ok() || problems.push(`${response.url()}: ${response.status()}`),
+  );
   try {
     await page.goto(http);
     await page.locator('#stage[data-frame]').waitFor();

@@ -1,9 +1,21 @@
-// Proves what ./dev does before and around a build: it names a tool that is too old before anything is built, recovers
-// a build folder that a failure left half-configured, and ./dev bare leaves nothing behind when it is interrupted and
-// says so where it cannot run.
+// Proves what ./dev does before and around a build: it names a tool that is too old before anything
+// is built, recovers a build folder that a failure left half-configured, and ./dev bare leaves
+// nothing behind when it is interrupted and says so where it cannot run.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { chmodSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, readlinkSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import {
+  chmodSync,
+  cpSync,
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readFileSync,
+  readdirSync,
+  readlinkSync,
+  rmSync,
+  statSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -14,18 +26,25 @@ const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 describe('./dev', () => {
   let folder, tree, bin;
 
-  // A copy of the tree with build folders of its own, and a folder of programs that take precedence over others.
+  // A copy of the tree with build folders of its own, and a folder of programs that take precedence
+  // over others.
   before(() => {
     folder = mkdtempSync(join(tmpdir(), 'voxcast-dev-'));
     tree = join(folder, 'tree');
     bin = join(folder, 'bin');
     mkdirSync(tree);
     mkdirSync(bin);
-    const files = spawnSync('git', ['-C', ROOT, 'ls-files', '-z', '-co', '--exclude-standard'], { encoding: 'utf8' });
+    const files = spawnSync('git', ['-C', ROOT, 'ls-files', '-z', '-co', '--exclude-standard'], {
+      encoding: 'utf8',
+    });
     for (const file of files.stdout.split('\0'))
       if (file && existsSync(join(ROOT, file))) cpSync(join(ROOT, file), join(tree, file));
     for (const name of ['lil-gui', 'uplot', '.package-lock.json'])
-      cpSync(join(ROOT, 'web_client/node_modules', name), join(tree, 'web_client/node_modules', name), { recursive: true });
+      cpSync(
+        join(ROOT, 'web_client/node_modules', name),
+        join(tree, 'web_client/node_modules', name),
+        { recursive: true },
+      );
   });
   after(() => rmSync(folder, { recursive: true, force: true }));
 
@@ -36,16 +55,25 @@ describe('./dev', () => {
 
   function dev(args, env = {}) {
     const path = `${bin}:${process.env.PATH}`;
-    return spawnSync('./dev', args, { cwd: tree, encoding: 'utf8', env: { ...process.env, PATH: path, ...env } });
+    return spawnSync('./dev', args, {
+      cwd: tree,
+      encoding: 'utf8',
+      env: { ...process.env, PATH: path, ...env },
+    });
   }
 
   for (const [name, script, message] of [
     ['cc', 'echo 9.4.0', /the C compiler cc is version 9\.4\.0; voxcast needs 12 or newer/],
     ['node', 'echo v16.20.0', /node is version 16\.20\.0; voxcast needs 18\.18 or newer/],
-    ['cmake', 'echo cmake version 3.18.4', /cmake is version 3\.18\.4; voxcast needs 3\.25 or newer/],
+    [
+      'cmake',
+      'echo cmake version 3.18.4',
+      /cmake is version 3\.18\.4; voxcast needs 3\.25 or newer/,
+    ],
     [
       'dpkg-query',
-      'case "$*" in *Version*libgl1-mesa-dri*) echo 20.3.5-1 ;; *) exec /usr/bin/dpkg-query "$@" ;; esac',
+      'case "$*" in *Version*libgl1-mesa-dri*) echo 20.3.5-1 ;; *) exec /usr/bin/dpkg-query ' +
+        '"$@" ;; esac',
       /Mesa \(libgl1-mesa-dri\) is version 20\.3\.5-1; voxcast needs 22\.3 or newer/,
     ],
   ])
@@ -62,7 +90,10 @@ describe('./dev', () => {
     const broken = dev(['build'], { PKG_CONFIG_LIBDIR: '/nonexistent' });
     assert.notEqual(broken.status, 0);
     assert.match(broken.stderr, /epoxy/);
-    assert.ok(existsSync(join(tree, 'build/release/CMakeCache.txt')), 'the folder is half-configured');
+    assert.ok(
+      existsSync(join(tree, 'build/release/CMakeCache.txt')),
+      'the folder is half-configured',
+    );
     const { status, stderr } = dev(['build']);
     assert.equal(status, 0, stderr);
     assert.ok(existsSync(join(tree, 'build/release/bin/voxcastd')));
@@ -76,13 +107,19 @@ describe('./dev', () => {
 describe('./dev bare', { skip: process.getuid() !== 0 && 'only root can make a bare root' }, () => {
   const BARE = join(ROOT, 'tests/bare/bare.sh');
   const gitObjects = () => {
-    const { stdout } = spawnSync('git', ['-C', ROOT, 'rev-parse', '--git-path', 'objects'], { encoding: 'utf8' });
+    const { stdout } = spawnSync('git', ['-C', ROOT, 'rev-parse', '--git-path', 'objects'], {
+      encoding: 'utf8',
+    });
     const folder = resolve(ROOT, stdout.trim());
     return readdirSync(folder, { recursive: true }).map((name) => join(folder, name));
   };
 
   test('says in one line that it can do nothing', () => {
-    const { status, stderr } = spawnSync(BARE, ['run'], { encoding: 'utf8', uid: 65534, env: { ...process.env, HOME: '/tmp' } });
+    const { status, stderr } = spawnSync(BARE, ['run'], {
+      encoding: 'utf8',
+      uid: 65534,
+      env: { ...process.env, HOME: '/tmp' },
+    });
     assert.equal(status, 77);
     assert.match(stderr, /^dev bare: skipped, no bare root can be made here: not root\n$/);
   });
@@ -93,7 +130,12 @@ describe('./dev bare', { skip: process.getuid() !== 0 && 'only root can make a b
     child.stderr.on('data', (data) => (log += data));
     const ended = new Promise((done) => child.on('exit', (code, signal) => done(code ?? signal)));
     // While packages are being installed, by apt that sudo called.
-    let code = await Promise.race([ended, new Promise((done) => child.stderr.on('data', () => /packages: installing/.test(log) && done('begun')))]);
+    let code = await Promise.race([
+      ended,
+      new Promise((done) =>
+        child.stderr.on('data', () => /packages: installing/.test(log) && done('begun')),
+      ),
+    ]);
     if (code === 77) return t.skip(log.trim());
     assert.equal(code, 'begun', log);
     child.kill('SIGINT');
@@ -111,6 +153,9 @@ describe('./dev bare', { skip: process.getuid() !== 0 && 'only root can make a b
     });
     assert.deepEqual(left, [], 'no process is left');
     const owner = (path) => statSync(path).uid;
-    assert.ok(gitObjects().every((path) => owner(path) === owner(ROOT)), 'the tree that was cloned keeps its owner');
+    assert.ok(
+      gitObjects().every((path) => owner(path) === owner(ROOT)),
+      'the tree that was cloned keeps its owner',
+    );
   });
 });

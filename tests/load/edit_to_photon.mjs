@@ -32,7 +32,11 @@ async function measure(count) {
   const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
   const parts = [];
   app.picture.addEventListener('presented', ({ detail: { header, decodeMs } }) =>
-    parts.push({ draw: (header.drawUs + header.readbackUs) / 1000, encode: header.encodeUs / 1000, decode: decodeMs }),
+    parts.push({
+      draw: (header.drawUs + header.readbackUs) / 1000,
+      encode: header.encodeUs / 1000,
+      decode: decodeMs,
+    }),
   );
   app.timer.times.length = 0;
   for (let i = 0; i < count; i++) {

@@ -1,5 +1,6 @@
-// Measures how fairly and how fast a daemon serves many viewers: each moves its camera all the time and acknowledges
-// every frame at once. Prints JSON and ends by itself. Only for a daemon on this machine.
+// Measures how fairly and how fast a daemon serves many viewers: each moves its camera all the time
+// and acknowledges every frame at once. Prints JSON and ends by itself. Only for a daemon on this
+// machine.
 // Run: node tests/load/viewers.mjs --url ws://127.0.0.1:8080 --viewers 8 --seconds 10
 import { parseArgs } from 'node:util';
 
@@ -68,7 +69,11 @@ console.log(
     viewers,
     seconds,
     size: `${values.width}x${values.height}`,
-    frames_per_second: { each: rates, min: Math.min(...rates), sum: rates.reduce((a, b) => a + b, 0) },
+    frames_per_second: {
+      each: rates,
+      min: Math.min(...rates),
+      sum: rates.reduce((a, b) => a + b, 0),
+    },
     longest_gap_ms: Math.max(0, ...gaps),
     camera_to_frame_ms: { median: quantile(delays, 0.5), p95: quantile(delays, 0.95) },
   }),

@@ -1,18 +1,21 @@
-// The structure of a C, C++ or GLSL file, as far as these tests need it: its functions with the words that their bodies
-// use, and the words of initializers and macros.
+// The structure of a C, C++ or GLSL file, as far as these tests need it: its functions with the
+// words that their bodies use, and the words of initializers and macros.
 
 /** @typedef {import('./c_tokens.mjs').Token} Token */
 
 /**
  * @typedef {object} FunctionBody
  * @property {string} name
- * @property {boolean} special  a constructor, destructor or operator, which is called by other names
+ * @property {boolean} special a constructor, destructor or operator, which is called by other names
  * @property {number} line  where its signature begins
  * @property {number} lastLine
  * @property {Set<string>} uses  words of its body
  */
 
-/** @typedef {{ functions: FunctionBody[], uses: Set<string> }} Structure  uses: words outside of functions */
+/**
+ * @typedef {{ functions: FunctionBody[], uses: Set<string> }} Structure uses: words outside of
+ *   functions
+ */
 
 /** What a brace opens: `values` are initialisers, or members of a GLSL block. */
 /** @typedef {{ kind: 'scope' | 'class' | 'type' | 'values' | 'function' | 'inner', name?: string,
@@ -41,7 +44,9 @@ function outerIndices(head) {
 const initializerIndex = (head, outer) =>
   outer.find((index) => isMark(head[index], ':') && isMark(head[index - 1], ')')) ?? -1;
 
-/** The index of a function's name in the tokens before its body; -1 if they do not begin a function. */
+/**
+ * The index of a function's name in the tokens before its body; -1 if they do not begin a function.
+ */
 function nameIndex(head) {
   const outer = outerIndices(head);
   const operator = head.findIndex((token) => isWord(token, ['operator']));
@@ -70,7 +75,12 @@ function braceAfter(head, language) {
     const special = name === 'operator' || isMark(head[at - 1], '~') || isOwner(head, at, name);
     const colon = initializerIndex(head, outerIndices(head));
     const tokens = colon < 0 ? [] : head.slice(colon + 1);
-    return { kind: 'function', name, tokens, function: { name, special, line: head[0].line, uses: new Set() } };
+    return {
+      kind: 'function',
+      name,
+      tokens,
+      function: { name, special, line: head[0].line, uses: new Set() },
+    };
   }
   const type = outerIndices(head).findIndex((index) => isWord(head[index], TYPES));
   if (type < 0 || head.some((token) => isMark(token, '='))) return { kind: 'values' };
@@ -81,7 +91,10 @@ function braceAfter(head, language) {
 /** Whether `name` at `at` is qualified by itself, as constructors are. */
 const isOwner = (head, at, name) => isMark(head[at - 1], ':') && isWord(head[at - 3], [name]);
 
-/** Words that may call or read. In C and GLSL a member does not count as a use of a function of its name. */
+/**
+ * Words that may call or read. In C and GLSL a member does not count as a use of a function of its
+ * name.
+ */
 function addUses(uses, tokens, language) {
   tokens.forEach((token, index) => {
     if (token.kind !== 'word') return;
@@ -151,15 +164,20 @@ class StructureReader {
     this.#head = [];
   }
 
-  /** Every branch of an #if begins with the braces that were open before it, so that braces stay in pairs. */
+  /**
+   * Every branch of an #if begins with the braces that were open before it, so that braces stay in
+   * pairs.
+   */
   #addDirective({ text, inner }) {
-    if (text.startsWith('if')) this.#branches.push({ open: [...this.#open], head: [...this.#head] });
+    if (text.startsWith('if'))
+      this.#branches.push({ open: [...this.#open], head: [...this.#head] });
     else if (text === 'endif') this.#branches.pop();
     else if (text.startsWith('el') && this.#branches.length > 0) {
       this.#open = [...this.#branches.at(-1).open];
       this.#head = [...this.#branches.at(-1).head];
     }
-    if (text !== 'include') addUses(this.uses, text === 'define' ? inner.slice(1) : inner, this.#language);
+    if (text !== 'include')
+      addUses(this.uses, text === 'define' ? inner.slice(1) : inner, this.#language);
   }
 }
 

@@ -1,5 +1,5 @@
-// C, C++ and GLSL as tokens. Comments are dropped, a string is one token, and a preprocessor line is one token with
-// inner tokens.
+// C, C++ and GLSL as tokens. Comments are dropped, a string is one token, and a preprocessor line
+// is one token with inner tokens.
 
 /**
  * @typedef {object} Token
@@ -9,7 +9,8 @@
  * @property {Token[]} [inner]  of a directive: what follows its name
  */
 
-// Raw strings come before words, as their prefix is a word; numbers may hold C++'s digit separators.
+// Raw strings come before words, as their prefix is a word; numbers may hold C++'s digit
+// separators.
 const TOKEN = new RegExp(
   [
     String.raw`(?<space>[ \t\r\f]+|\\\r?\n)`,
@@ -26,9 +27,13 @@ const TOKEN = new RegExp(
 
 const countNewlines = (text) => text.split('\n').length - 1;
 
-/** The end of the preprocessor line that begins at `start`: its newline, unless continued or in a comment. */
+/**
+ * The end of the preprocessor line that begins at `start`: its newline, unless continued or in a
+ * comment.
+ */
 function directiveEnd(text, start) {
-  const part = /\\\r?\n|\/\*[\s\S]*?(?:\*\/|$)|\/\/(?:\\\r?\n|[^\n])*|"(?:\\[\s\S]|[^"\\\n])*"|[^\n]/y;
+  const part =
+    /\\\r?\n|\/\*[\s\S]*?(?:\*\/|$)|\/\/(?:\\\r?\n|[^\n])*|"(?:\\[\s\S]|[^"\\\n])*"|[^\n]/y;
   part.lastIndex = start;
   let end = start;
   while (part.test(text)) end = part.lastIndex;
@@ -55,7 +60,9 @@ export function tokenize(text, firstLine = 1) {
       end = directiveEnd(text, at);
       tokens.push(directive(text.slice(at + 1, end), line));
     } else if (!groups.space && !groups.comment) {
-      const kind = groups.raw ? 'string' : ['word', 'number', 'string', 'mark'].find((name) => groups[name]);
+      const kind = groups.raw
+        ? 'string'
+        : ['word', 'number', 'string', 'mark'].find((name) => groups[name]);
       tokens.push({ kind, text: text.slice(at, end), line });
       lineIsEmpty = false;
     }

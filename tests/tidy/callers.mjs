@@ -1,4 +1,5 @@
-// Functions and macros of the product that nothing in the product names: code without a caller is deleted.
+// Functions and macros of the product that nothing in the product names: code without a caller is
+// deleted.
 import { readStructure } from './c_structure.mjs';
 import { tokensOf } from './c_tokens.mjs';
 
@@ -6,7 +7,15 @@ import { tokensOf } from './c_tokens.mjs';
 /** @typedef {{ path: string, line: number, name: string, what: 'function' | 'macro' }} Unused */
 
 /** Macros that libraries read, whose headers we include: prefixes of their names. */
-const FOR_LIBRARIES = ['STB_', 'STBI_', 'STBIR_', 'TINYGLTF_', 'TINYOBJLOADER_', 'CGLM_', '_GNU_SOURCE'];
+const FOR_LIBRARIES = [
+  'STB_',
+  'STBI_',
+  'STBIR_',
+  'TINYGLTF_',
+  'TINYOBJLOADER_',
+  'CGLM_',
+  '_GNU_SOURCE',
+];
 
 const HEADER_GUARD = /_(H|HPP)$/;
 
@@ -51,19 +60,26 @@ function unusedMacros(files) {
       if (token.kind !== 'directive' || token.inner.length === 0) return;
       const [first, ...others] = token.inner;
       others.forEach(({ text }) => used.add(text));
-      if (token.text === 'define') defined.push({ path: file.path, line: token.line, name: first.text, what: 'macro' });
+      if (token.text === 'define')
+        defined.push({ path: file.path, line: token.line, name: first.text, what: 'macro' });
       else if (token.text !== 'undef' && !isDefault(token, tokens[index + 1])) used.add(first.text);
     });
   }
   const pasted = pastedParts(files);
-  const isOurs = ({ name }) => !HEADER_GUARD.test(name) && !FOR_LIBRARIES.some((prefix) => name.startsWith(prefix));
-  return defined.filter((macro) => isOurs(macro) && !used.has(macro.name) && !pasted.some((part) => part(macro.name)));
+  const isOurs = ({ name }) =>
+    !HEADER_GUARD.test(name) && !FOR_LIBRARIES.some((prefix) => name.startsWith(prefix));
+  return defined.filter(
+    (macro) => isOurs(macro) && !used.has(macro.name) && !pasted.some((part) => part(macro.name)),
+  );
 }
 
 /** Defines for shaders stand in strings: "STAGE LISTS_RESET\\n". */
 const definesIn = (string) => string.replaceAll('\\n', ' ').match(/\b[A-Z][A-Z0-9_]+\b/g) ?? [];
 
-/** Names that macros build: for PREFIX_##x all names with that prefix, for x##_SUFFIX all names with that suffix. */
+/**
+ * Names that macros build: for PREFIX_##x all names with that prefix, for x##_SUFFIX all names with
+ * that suffix.
+ */
 function pastedParts(files) {
   const parts = [];
   for (const file of files)
@@ -103,7 +119,10 @@ export function judgeUnused(unused, allowed, named) {
   const names = new Set(unused.map(({ name }) => name));
   const nobodys = unused
     .filter(({ name }) => !(name in allowed))
-    .map(({ path, line, name, what }) => `${path}:${line}: the product never names the ${what} ${name}: delete it`);
+    .map(
+      ({ path, line, name, what }) =>
+        `${path}:${line}: the product never names the ${what} ${name}: delete it`,
+    );
   const list = 'callers_allowed.mjs';
   const needless = Object.keys(allowed).flatMap((name) => {
     if (!names.has(name)) return [`${list}: ${name} is gone or has callers: take it off the list`];

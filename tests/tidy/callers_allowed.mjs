@@ -3,7 +3,8 @@
 /** @type {Record<string, string>} */
 export const CALLED_BY_TESTS = {
   frame_header_decode: 'reads back what frame_header_encode() has written',
-  parameter_write_markdown_row: 'a row of PROTOCOL.md, which is compared with the table of parameters',
+  parameter_write_markdown_row:
+    'a row of PROTOCOL.md, which is compared with the table of parameters',
   voxel_box_contains: 'whether one box of voxels holds another, as regions must',
   gpu_program_find_member: 'offsets of blocks as the driver has them, which C must share',
   gpu_texture_read: 'looks into textures that no pass reads back',

@@ -1,5 +1,5 @@
-// Shaders include each file once, wherever that is. So what a file under a condition includes must be included before,
-// or it is missing where the condition does not hold.
+// Shaders include each file once, wherever that is. So what a file under a condition includes must
+// be included before, or it is missing where the condition does not hold.
 import { findIncludes } from './includes.mjs';
 import { tokensOf } from './c_tokens.mjs';
 
@@ -41,6 +41,9 @@ export function judgeConditionalIncludes(shaders) {
       const there = new Set(before.flatMap((other) => [other.header, ...closure(other.header)]));
       return [...closure(header)]
         .filter((needed) => !there.has(needed))
-        .map((needed) => `${path}:${line}: includes ${header} under a condition: include ${needed} before`);
+        .map(
+          (needed) =>
+            `${path}:${line}: includes ${header} under a condition: include ${needed} before`,
+        );
     });
 }

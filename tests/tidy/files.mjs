@@ -28,12 +28,18 @@ export function languageOf(path) {
 
 /** @returns {SourceFile[]}  every source file of ours, in order of paths */
 export function readSources() {
-  const listed = execFileSync('git', ['-C', ROOT, 'ls-files', '-z', '-co', '--exclude-standard'], { encoding: 'utf8' });
+  const listed = execFileSync('git', ['-C', ROOT, 'ls-files', '-z', '-co', '--exclude-standard'], {
+    encoding: 'utf8',
+  });
   return listed
     .split('\0')
     .filter((path) => languageOf(path) && existsSync(join(ROOT, path)))
     .sort()
-    .map((path) => ({ path, language: languageOf(path), text: readFileSync(join(ROOT, path), 'utf8') }));
+    .map((path) => ({
+      path,
+      language: languageOf(path),
+      text: readFileSync(join(ROOT, path), 'utf8'),
+    }));
 }
 
 /** @param {SourceFile} file */

@@ -29,14 +29,17 @@ function wordsIn(file) {
  */
 export function findBanned(files, banned) {
   const found = new Map(banned.map(({ word }) => [word, []]));
-  const ruleOf = new Map(banned.flatMap((rule) => [rule.word, `${rule.word}s`].map((form) => [form, rule])));
+  const ruleOf = new Map(
+    banned.flatMap((rule) => [rule.word, `${rule.word}s`].map((form) => [form, rule])),
+  );
   const seen = new Set();
   for (const file of files)
     for (const { text: name, line } of wordsIn(file)) {
       if (seen.has(name)) continue;
       seen.add(name);
       for (const rule of new Set(wordsOf(name).map((word) => ruleOf.get(word))))
-        if (rule && !rule.except?.test(name)) found.get(rule.word).push({ path: file.path, line, name });
+        if (rule && !rule.except?.test(name))
+          found.get(rule.word).push({ path: file.path, line, name });
     }
   return found;
 }
@@ -56,7 +59,9 @@ export function judgeBanned(found, banned, allowed) {
       const kept = allowed[word] ?? 0;
       const figures = `${identifiers.length} identifiers say "${word}"; ${kept} at most`;
       if (identifiers.length > kept)
-        return identifiers.map(({ path, line, name }) => `${path}:${line}: ${name}: say ${instead} (${figures})`);
+        return identifiers.map(
+          ({ path, line, name }) => `${path}:${line}: ${name}: say ${instead} (${figures})`,
+        );
       return identifiers.length < kept ? [`words_allowed.json: lower the figure: ${figures}`] : [];
     }),
   ];

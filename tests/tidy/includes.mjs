@@ -4,7 +4,10 @@ import { tokensOf } from './c_tokens.mjs';
 /** @typedef {import('./files.mjs').SourceFile} SourceFile */
 /** @typedef {import('./layers.mjs').Layer} Layer */
 /** @typedef {import('./layers.mjs').Arrow} Arrow */
-/** @typedef {{ path: string, line: number, header: string }} Include  `header` as a path from the root */
+/**
+ * @typedef {{ path: string, line: number, header: string }} Include `header` as a path from the
+ *   root
+ */
 
 const GPU_FOLDER = 'renderer/gpu/';
 
@@ -20,7 +23,11 @@ export function findIncludes(files) {
       .filter((token) => token.text === 'include' && token.inner?.[0]?.kind === 'string')
       .map(({ line, inner }) => {
         const name = inner[0].text.slice(1, -1);
-        return { path: file.path, line, header: paths.has(`shaders/${name}`) ? `shaders/${name}` : name };
+        return {
+          path: file.path,
+          line,
+          header: paths.has(`shaders/${name}`) ? `shaders/${name}` : name,
+        };
       }),
   );
 }
@@ -42,7 +49,10 @@ export function judgeIncludes(includes, layers, upward) {
   const against = includes.filter(({ path, header }) => {
     const layer = layerOf(path, layers);
     const target = layerOf(header, layers);
-    return !layer || !(layer === target || layer.may.includes(target?.folder) || layer.may.includes(header));
+    return (
+      !layer ||
+      !(layer === target || layer.may.includes(target?.folder) || layer.may.includes(header))
+    );
   });
   const isArrow = ({ path, header }, { from, to }) => path === from && header === to;
   const wrong = against
@@ -61,7 +71,8 @@ function refusal(layer, header) {
 }
 
 /**
- * Folders of the table that include each other, if only by way of others; single headers do not count.
+ * Folders of the table that include each other, if only by way of others; single headers do not
+ * count.
  * @param {Layer[]} layers
  * @returns {string[]} what is wrong
  */
@@ -87,8 +98,12 @@ export function findForeignGlCalls(files) {
     .flatMap((file) => {
       const tokens = tokensOf(file);
       const calls = tokens.filter(
-        (token, index) => /^(gl|egl)[A-Z][A-Za-z0-9]+$/.test(token.text) && tokens[index + 1]?.text === '(',
+        (token, index) =>
+          /^(gl|egl)[A-Z][A-Za-z0-9]+$/.test(token.text) && tokens[index + 1]?.text === '(',
       );
-      return calls.map(({ line, text: name }) => `${file.path}:${line}: calls ${name}, which ${GPU_FOLDER} alone may`);
+      return calls.map(
+        ({ line, text: name }) =>
+          `${file.path}:${line}: calls ${name}, which ${GPU_FOLDER} alone may`,
+      );
     });
 }

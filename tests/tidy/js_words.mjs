@@ -1,4 +1,5 @@
-// The identifiers of a JS file: without comments, strings and regular expressions, but with the code inside `${}`.
+// The identifiers of a JS file: without comments, strings and regular expressions, but with the
+// code inside `${}`.
 
 /** @typedef {{ text: string, line: number }} Word */
 
@@ -47,7 +48,8 @@ export function readJsWords(text) {
   };
   while (at < text.length) {
     const { 0: matched, groups } = match(PART);
-    const expression = matched === '/' && BEFORE_VALUES.test(last) ? match(REGULAR_EXPRESSION) : null;
+    const expression =
+      matched === '/' && BEFORE_VALUES.test(last) ? match(REGULAR_EXPRESSION) : null;
     if (groups.word) words.push({ text: matched, line });
     advance(expression?.[0] ?? matched);
     if (groups.space || groups.comment) continue;

@@ -1,8 +1,12 @@
-// Which folder may include which: the one table. A folder may include itself and what its row lists: single headers, or
-// folders. A listed folder does not stand for folders inside it that have rows of their own.
+// Which folder may include which: the one table. A folder may include itself and what its row
+// lists: single headers, or folders. A listed folder does not stand for folders inside it that have
+// rows of their own.
 
 /** @typedef {{ folder: string, may: string[], why: string }} Layer */
-/** @typedef {{ from: string, to: string, why: string }} Arrow  a file that includes a header against the table */
+/**
+ * @typedef {{ from: string, to: string, why: string }} Arrow a file that includes a header against
+ *   the table
+ */
 
 /** Made by CMake: where sources and shaders lie. */
 const PATHS = 'voxcast_paths.h';
@@ -27,24 +31,54 @@ export const LAYERS = [
     why: 'stages share by shaders/lib alone',
   })),
 
-  { folder: 'renderer/gpu', may: ['shaders/shared', ...BASE], why: 'the ground floor; alone calls GL and EGL' },
+  {
+    folder: 'renderer/gpu',
+    may: ['shaders/shared', ...BASE],
+    why: 'the ground floor; alone calls GL and EGL',
+  },
   {
     folder: 'renderer/scene',
     may: ['renderer/image', 'protocol/parameters', ...BASE, ...SETTINGS],
     why: 'the document alone: no GPU, no files',
   },
   { folder: 'renderer/image', may: BASE, why: 'pixels of textures: decoded and cached' },
-  { folder: 'renderer/import', may: ['renderer/scene', 'renderer/image', ...BASE], why: 'files to documents' },
-  { folder: 'renderer/import/builtin', may: ['renderer/import', 'renderer/scene'], why: 'scenes made by code' },
+  {
+    folder: 'renderer/import',
+    may: ['renderer/scene', 'renderer/image', ...BASE],
+    why: 'files to documents',
+  },
+  {
+    folder: 'renderer/import/builtin',
+    may: ['renderer/import', 'renderer/scene'],
+    why: 'scenes made by code',
+  },
   {
     folder: 'renderer/gpu_scene',
-    may: ['renderer/gpu', 'renderer/scene', 'renderer/image', 'shaders/shared', ...BASE, ...SETTINGS],
+    may: [
+      'renderer/gpu',
+      'renderer/scene',
+      'renderer/image',
+      'shaders/shared',
+      ...BASE,
+      ...SETTINGS,
+    ],
     why: 'the scene as the GPU holds it',
   },
-  { folder: 'renderer/metrics', may: ['shaders/shared', ...BASE, ...SETTINGS], why: 'compares images; knows no scene' },
+  {
+    folder: 'renderer/metrics',
+    may: ['shaders/shared', ...BASE, ...SETTINGS],
+    why: 'compares images; knows no scene',
+  },
   {
     folder: 'renderer/path_tracer',
-    may: ['renderer/scene', 'renderer/image', 'shaders/shared', 'renderer/camera.h', ...BASE, ...SETTINGS],
+    may: [
+      'renderer/scene',
+      'renderer/image',
+      'shaders/shared',
+      'renderer/camera.h',
+      ...BASE,
+      ...SETTINGS,
+    ],
     why: 'runs on the CPU alone',
   },
   {
@@ -126,10 +160,21 @@ export const LAYERS = [
     may: ['server/document', 'protocol', 'renderer/scene', 'renderer/path_tracer', PATHS, ...API],
     why: 'measuring, below both programs',
   },
-  { folder: 'server/stream', may: ['protocol', ...API], why: 'queues between threads, and encoders' },
+  {
+    folder: 'server/stream',
+    may: ['protocol', ...API],
+    why: 'queues between threads, and encoders',
+  },
   {
     folder: 'server/render',
-    may: ['server/document', 'server/accuracy', 'server/stream', 'protocol', 'renderer/scene', ...API],
+    may: [
+      'server/document',
+      'server/accuracy',
+      'server/stream',
+      'protocol',
+      'renderer/scene',
+      ...API,
+    ],
     why: 'the render thread',
   },
   {
@@ -171,7 +216,15 @@ export const LAYERS = [
   },
   {
     folder: 'server',
-    may: ['server/network', 'server/render', 'server/stream', 'server/tool', 'protocol', PATHS, ...API],
+    may: [
+      'server/network',
+      'server/render',
+      'server/stream',
+      'server/tool',
+      'protocol',
+      PATHS,
+      ...API,
+    ],
     why: 'the two programs',
   },
 ];

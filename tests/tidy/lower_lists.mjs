@@ -1,5 +1,5 @@
-// Lowers the figures of the lists to the present ones and removes entries that are no longer needed: node
-// tests/tidy/lower_lists.mjs. Raises none, and does not follow files that have moved.
+// Lowers the figures of the lists to the present ones and removes entries that are no longer
+// needed: node tests/tidy/lower_lists.mjs. Raises none, and does not follow files that have moved.
 import { readFileSync, writeFileSync } from 'node:fs';
 
 import { isCode, readSources } from './files.mjs';
@@ -24,7 +24,9 @@ const excesses = findExcesses(sources);
 const figureOf = (kind) => (key) =>
   excesses.find((excess) => excess.kind === kind && excess.key === key)?.figure ?? 0;
 rewrite('lengths_allowed.json', (lists) =>
-  Object.fromEntries(Object.entries(lists).map(([kind, list]) => [kind, lowered(list, figureOf(kind))])),
+  Object.fromEntries(
+    Object.entries(lists).map(([kind, list]) => [kind, lowered(list, figureOf(kind))]),
+  ),
 );
 
 const named = sources.filter((source) => isCode(source) || source.language === 'JS');

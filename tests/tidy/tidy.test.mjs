@@ -1,6 +1,7 @@
-// Proves that the sources keep the project's rules: lengths, no code without callers, layers, and the field's words in
-// names. What breaks a rule today is in a list beside this file, with a figure or a reason. A list may only shrink:
-// entries that are no longer needed fail, too. scanners.test.mjs shows that each rule can fail.
+// Proves that the sources keep the project's rules: lengths, no code without callers, layers, and
+// the field's words in names. What breaks a rule today is in a list beside this file, with a figure
+// or a reason. A list may only shrink: entries that are no longer needed fail, too.
+// scanners.test.mjs shows that each rule can fail.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

@@ -1,10 +1,12 @@
-// Words that identifiers do not use, since the field has others for them. docs/GLOSSARY.md explains the words to use.
+// Words that identifiers do not use, since the field has others for them. docs/GLOSSARY.md explains
+// the words to use.
 
 /**
  * @typedef {object} BannedWord
  * @property {string} word  as well with an s at its end
  * @property {string} instead
- * @property {RegExp} [except]  identifiers that mean something else by it, or that are others' to name
+ * @property {RegExp} [except] identifiers that mean something else by it, or that are others' to
+ *   name
  */
 
 /** @type {BannedWord[]} */
@@ -14,7 +16,11 @@ export const BANNED = [
   { word: 'least', instead: 'min', except: /least_recently_used/ },
   { word: 'most', instead: 'max' },
   // "Final gather" is the field's.
-  { word: 'gather', instead: 'accumulate', except: /^(final_|frame_)?gather(_modes?|_mode_names|_step)?$|^GATHER_/ },
+  {
+    word: 'gather',
+    instead: 'accumulate',
+    except: /^(final_|frame_)?gather(_modes?|_mode_names|_step)?$|^GATHER_/,
+  },
   { word: 'gathered', instead: 'accumulated' },
   { word: 'share', instead: 'visibility or fraction', except: /^VOXCAST_INSTALL_SHARE_DIR$/ },
   { word: 'quiet', instead: 'accumulate_only' },

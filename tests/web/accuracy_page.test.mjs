@@ -1,9 +1,17 @@
-// Proves the page that ./dev accuracy writes, from made-up results with known figures: tables, the front, figures that
-// noise makes unsure, what steps of settings buy, the windows with the largest errors, the image files, and the
-// recorded figures.
+// Proves the page that ./dev accuracy writes, from made-up results with known figures: tables, the
+// front, figures that noise makes unsure, what steps of settings buy, the windows with the largest
+// errors, the image files, and the recorded figures.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import {
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readFileSync,
+  rmSync,
+  statSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -11,13 +19,27 @@ import { fileURLToPath } from 'node:url';
 
 import { buysTable, stepsOf } from '../../docs/generate/accuracy_buys.mjs';
 import { worstWindows } from '../../docs/generate/accuracy_errors.mjs';
-import { cropped, makePicture, readPng, resized, tiled, writePng } from '../../docs/generate/png.mjs';
+import {
+  cropped,
+  makePicture,
+  readPng,
+  resized,
+  tiled,
+  writePng,
+} from '../../docs/generate/png.mjs';
 import { heatMapColor } from '../../web_client/accuracy/heat_map.js';
 
 const PROGRAM = fileURLToPath(new URL('../../docs/generate/accuracy.mjs', import.meta.url));
 const [WIDTH, HEIGHT] = [48, 30];
 
-const figures = (flip) => ({ ldr_flip: flip, ssim: 1 - flip, rel_mse: flip / 10, energy_red: 1.1, energy_green: 1, energy_blue: 0.9 });
+const figures = (flip) => ({
+  ldr_flip: flip,
+  ssim: 1 - flip,
+  rel_mse: flip / 10,
+  energy_red: 1.1,
+  energy_green: 1,
+  energy_blue: 0.9,
+});
 
 function rung(name, method, ms, flip, set = {}, scale = 1) {
   return {
@@ -38,15 +60,38 @@ const RUNGS = [
   rung('final', 'clipmap', 400, 0.05),
   rung('clipmap-bounces-4', 'clipmap', 50, 0.2, { gi_method: 'clipmap', bounces: '4' }),
   rung('clipmap-scale-0.5', 'clipmap', 20, 0.2, { gi_method: 'clipmap' }, 0.5),
-  rung('grid-64-cache', 'grid', 20, 0.16, { gi_method: 'grid', voxel_resolution: '64', gather_mode: 'cache' }),
-  rung('grid-128-cache', 'grid', 60, 0.08, { gi_method: 'grid', voxel_resolution: '128', gather_mode: 'cache' }),
-  rung('grid-64-half', 'grid', 30, 0.12, { gi_method: 'grid', voxel_resolution: '64', gather_mode: 'half' }),
-  rung('grid-128-half', 'grid', 60, 0.09, { gi_method: 'grid', voxel_resolution: '128', gather_mode: 'half' }),
+  rung('grid-64-cache', 'grid', 20, 0.16, {
+    gi_method: 'grid',
+    voxel_resolution: '64',
+    gather_mode: 'cache',
+  }),
+  rung('grid-128-cache', 'grid', 60, 0.08, {
+    gi_method: 'grid',
+    voxel_resolution: '128',
+    gather_mode: 'cache',
+  }),
+  rung('grid-64-half', 'grid', 30, 0.12, {
+    gi_method: 'grid',
+    voxel_resolution: '64',
+    gather_mode: 'half',
+  }),
+  rung('grid-128-half', 'grid', 60, 0.09, {
+    gi_method: 'grid',
+    voxel_resolution: '128',
+    gather_mode: 'half',
+  }),
 ];
 RUNGS[2].settings.preset = 'final';
 
-const noise = (reference, smallest) => ({ reference, smallest, enough: reference <= 0.1 * smallest });
-const QUALITY = { high: { gather_mode: 'cache', cone_step: 0.5 }, final: { gather_mode: 'rays', cone_step: 0.25 } };
+const noise = (reference, smallest) => ({
+  reference,
+  smallest,
+  enough: reference <= 0.1 * smallest,
+});
+const QUALITY = {
+  high: { gather_mode: 'cache', cone_step: 0.5 },
+  final: { gather_mode: 'rays', cone_step: 0.25 },
+};
 const RESULTS = {
   setup: {
     scene: { source: 'builtin:cornell', width: WIDTH, height: HEIGHT },
@@ -54,9 +99,20 @@ const RESULTS = {
     quality: QUALITY,
     reference: { noise: 0.004, direct: true },
   },
-  metrics: ['ldr_flip', 'ssim', 'rel_mse', 'energy_red'].map((name) => ({ name, title: name.toUpperCase(), unit: '' })),
+  metrics: ['ldr_flip', 'ssim', 'rel_mse', 'energy_red'].map((name) => ({
+    name,
+    title: name.toUpperCase(),
+    unit: '',
+  })),
   rungs: RUNGS,
-  noise: { metrics: { ldr_flip: noise(0.004, 0.05), ssim: noise(0.01, 0.05), energy_red: noise(0.001, 0.1) }, indirect: { energy_red: noise(0.02, 0.1) } },
+  noise: {
+    metrics: {
+      ldr_flip: noise(0.004, 0.05),
+      ssim: noise(0.01, 0.05),
+      energy_red: noise(0.001, 0.1),
+    },
+    indirect: { energy_red: noise(0.02, 0.1) },
+  },
 };
 
 let folder;
@@ -65,7 +121,8 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 
 function gradient() {
   const picture = makePicture(WIDTH, HEIGHT);
-  for (let i = 0; i < picture.rgb.length; i++) picture.rgb[i] = (i * 7 + (i % 5) * ((i * i) % 97)) & 255;
+  for (let i = 0; i < picture.rgb.length; i++)
+    picture.rgb[i] = (i * 7 + (i % 5) * ((i * i) % 97)) & 255;
   return picture;
 }
 
@@ -104,7 +161,10 @@ test('the window that errs most is found', () => {
   const windows = worstWindows(errorMap({ x: 36, y: 8 }));
   assert.equal(windows.length, 3);
   const [worst, next] = windows;
-  assert.ok(worst.x <= 36 && 36 < worst.x + worst.width && worst.y <= 8 && 8 < worst.y + worst.height, JSON.stringify(worst));
+  assert.ok(
+    worst.x <= 36 && 36 < worst.x + worst.width && worst.y <= 8 && 8 < worst.y + worst.height,
+    JSON.stringify(worst),
+  );
   assert.ok(worst.error > 0.5 && next.error < worst.error);
 });
 
@@ -119,12 +179,22 @@ test('steps pair rungs that differ in one setting alone', () => {
     'voxel_resolution 64 128',
   ]);
   const table = buysTable([RUNGS]);
-  assert.match(table, /voxels along an edge: 64 → 128 \| 2 \| −25 % \(−50 % to −25 %\) \|.*\| \+200 % \(\+100 % to \+200 %\) \|/);
-  assert.match(table, /bounces: 4 → unlimited \| 1 \| −50 % \| −50 % \| −20 % \| −20 % \| −20 % \|/);
+  assert.match(
+    table,
+    new RegExp(
+      String.raw`voxels along an edge: 64 → 128 \| 2 \| −25 % \(−50 % to −25 %\) \|.*` +
+        String.raw`\| \+200 % \(\+100 % to \+200 %\) \|`,
+    ),
+  );
+  assert.match(
+    table,
+    /bounces: 4 → unlimited \| 1 \| −50 % \| −50 % \| −20 % \| −20 % \| −20 % \|/,
+  );
   assert.equal(buysTable([[RUNGS[0]]]), '');
 });
 
-const run = (...options) => spawnSync(process.execPath, [PROGRAM, ...options], { encoding: 'utf8' });
+const run = (...options) =>
+  spawnSync(process.execPath, [PROGRAM, ...options], { encoding: 'utf8' });
 
 function writeResults(out, results) {
   mkdirSync(join(out, 'cornell'), { recursive: true });
@@ -137,16 +207,40 @@ function writeResults(out, results) {
 test('the page has curve, tables, marks of noise, pictures and the reasons', () => {
   const [out, docs] = ['out', 'docs'].map((name) => join(folder, name));
   writeResults(out, RESULTS);
-  const { status, stderr } = run('--page-only', '--out', out, '--docs', docs, '--scenes', 'cornell,atrium');
+  const { status, stderr } = run(
+    '--page-only',
+    '--out',
+    out,
+    '--docs',
+    docs,
+    '--scenes',
+    'cornell,atrium',
+  );
   assert.equal(status, 0, stderr);
   const page = readFileSync(join(docs, 'accuracy.md'), 'utf8');
   assert.match(page, /\| Cornell box \| 0\.4 \| – \| – \| 0\.1 \| 0\.05 \| ~0\.95 \|/);
   assert.match(page, /Not measured: Atrium\./);
-  assert.match(page, /Noise of the reference: 0\.4 %.*errs by 0\.004 itself, and the smallest error shown is 0\.05.*these measures: SSIM of all light; ENERGY_RED of indirect light\./);
+  assert.match(
+    page,
+    new RegExp(
+      String.raw`Noise of the reference: 0\.4 %.*errs by 0\.004 itself, and the smallest error ` +
+        String.raw`shown is 0\.05.*these measures: SSIM of all light; ` +
+        String.raw`ENERGY_RED of indirect light\.`,
+    ),
+  );
   // ms a frame, ms to settle, MiB, errors, energies; on the front.
-  assert.match(page, /\| \*\*final\*\* \| 400 \| 4000 \| 400 \| 0\.05 \| ~0\.95 \| ~0\.005 \| 1\.1 ~1 ~0\.9 \| ~1\.1 ~1 ~0\.9 \| yes \|/);
+  assert.match(
+    page,
+    new RegExp(
+      String.raw`\| \*\*final\*\* \| 400 \| 4000 \| 400 \| 0\.05 \| ~0\.95 \| ~0\.005 ` +
+        String.raw`\| 1\.1 ~1 ~0\.9 \| ~1\.1 ~1 ~0\.9 \| yes \|`,
+    ),
+  );
   assert.match(page, /\| clipmap-bounces-4 \| 50 .*\| {2}\|/);
-  assert.match(page, /- `grid-64-half`: preset high, gi_method grid, voxel_resolution 64, gather_mode half/);
+  assert.match(
+    page,
+    /- `grid-64-half`: preset high, gi_method grid, voxel_resolution 64, gather_mode half/,
+  );
   assert.match(page, /LDR-FLIP 0\.\d+ around \(\d+, \d+\)/);
   assert.match(page, /## Presets and the front[^#]*\| Cornell box \| – \| – \| on it \| on it \|/);
   assert.match(page, /## What each setting buys[^#]*bounces: 4 → unlimited/);
@@ -154,17 +248,24 @@ test('the page has curve, tables, marks of noise, pictures and the reasons', () 
   assert.doesNotMatch(page, /undefined|NaN|\[object/);
   const svg = readFileSync(join(docs, 'accuracy', 'cornell.svg'), 'utf8');
   assert.equal(svg.match(/class="point"/g).length, RUNGS.length);
-  for (const name of ['cornell.png', 'cornell-errors.png']) assert.ok(statSync(join(docs, 'accuracy', name)).size > 100);
+  for (const name of ['cornell.png', 'cornell-errors.png'])
+    assert.ok(statSync(join(docs, 'accuracy', name)).size > 100);
 });
 
-test('figures are written beside the page, unless the results do not tell the quality table', () => {
+test('figures stand beside the page, unless results do not tell the quality table', () => {
   const [out, docs] = ['figures-out', 'figures-docs'].map((name) => join(folder, name));
   const path = join(docs, 'accuracy', 'figures.json');
   const options = ['--page-only', '--out', out, '--docs', docs, '--scenes', 'cornell'];
   writeResults(out, { ...RESULTS, setup: { ...RESULTS.setup, quality: undefined } });
   const refused = run(...options);
   assert.equal(refused.status, 1);
-  assert.match(refused.stderr, /cannot write .*figures\.json: the results of cornell do not tell the quality table; it must be measured anew/);
+  assert.match(
+    refused.stderr,
+    new RegExp(
+      String.raw`cannot write .*figures\.json: the results of cornell do not tell the quality ` +
+        'table; it must be measured anew',
+    ),
+  );
   assert.equal(existsSync(path), false);
   writeResults(out, RESULTS);
   assert.equal(run(...options).status, 0);
@@ -172,12 +273,18 @@ test('figures are written beside the page, unless the results do not tell the qu
   assert.equal(machine.gl_renderer, 'a renderer');
   assert.ok(machine.processor && machine.cores >= 1);
   assert.deepEqual(quality, QUALITY);
-  assert.deepEqual(scenes.map(({ name, rungs }) => [name, rungs.length]), [['cornell', RUNGS.length]]);
+  assert.deepEqual(
+    scenes.map(({ name, rungs }) => [name, rungs.length]),
+    [['cornell', RUNGS.length]],
+  );
 });
 
 test('refuses what it does not know', () => {
   assert.match(run('--scenes', 'nonesuch').stderr, /no scene "nonesuch"; there are cornell, /);
   assert.equal(run('--scenes', 'nonesuch').status, 2);
   assert.match(run('--nonesuch').stderr, /usage: /);
-  assert.match(run('--page-only', '--out', join(folder, 'empty')).stderr, /nothing has been measured/);
+  assert.match(
+    run('--page-only', '--out', join(folder, 'empty')).stderr,
+    /nothing has been measured/,
+  );
 });

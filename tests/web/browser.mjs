@@ -11,7 +11,9 @@ const require = createRequire(new URL('../../web_client/package.json', import.me
 const { chromium } = require('playwright-core');
 
 // Where the release preset puts it.
-process.env.VOXCASTD ??= fileURLToPath(new URL('../../build/release/bin/voxcastd', import.meta.url));
+process.env.VOXCASTD ??= fileURLToPath(
+  new URL('../../build/release/bin/voxcastd', import.meta.url),
+);
 
 const FLAGS = [
   '--headless',
@@ -42,8 +44,8 @@ export async function openBrowser(viewport = { width: 1280, height: 800 }) {
 }
 
 /**
- * Opens the client and waits for its first image, with direct light and the quickest preset: other images take long to
- * come to rest.
+ * Opens the client and waits for its first image, with direct light and the quickest preset: other
+ * images take long to come to rest.
  */
 export async function openClient(page, daemon) {
   await page.goto(`${daemon.http}/`);
@@ -56,8 +58,8 @@ export async function openClient(page, daemon) {
 }
 
 /**
- * A daemon with `scene` and a browser that shows its client. `problems` collects what the page throws;
- * `close` ends both.
+ * A daemon with `scene` and a browser that shows its client. `problems` collects what the page
+ * throws; `close` ends both.
  */
 export async function openScene(scene) {
   const daemon = await startDaemon(['--scene', scene]);
@@ -79,14 +81,19 @@ export async function openScene(scene) {
   }
 }
 
-/** Waits until this page's edits and camera are shown and the image has converged and has not changed for `ms`. */
+/**
+ * Waits until this page's edits and camera are shown and the image has converged and has not
+ * changed for `ms`.
+ */
 export async function untilStill(page, ms = 500) {
   await page.waitForFunction(
     () =>
       globalThis.voxcast.timer.waiting.size === 0 &&
-      Number(document.getElementById('stage').dataset.cameraRevision) >= globalThis.voxcast.sender.revision,
+      Number(document.getElementById('stage').dataset.cameraRevision) >=
+        globalThis.voxcast.sender.revision,
   );
-  const state = () => page.locator('#stage').evaluate(({ dataset }) => [dataset.frame, dataset.converged].join());
+  const state = () =>
+    page.locator('#stage').evaluate(({ dataset }) => [dataset.frame, dataset.converged].join());
   let last;
   do {
     last = await state();
@@ -134,7 +141,10 @@ export function difference(a, b) {
 
 /** Types a value into the input of a parameter and commits it. */
 export async function setParameter(page, parameter, value) {
-  const input = page.locator(`[data-parameter="${parameter}"] input[type=text], [data-parameter="${parameter}"] input[type=number]`);
+  const input = page.locator(
+    `[data-parameter="${parameter}"] input[type=text], [data-parameter="${parameter}"] ` +
+      'input[type=number]',
+  );
   await input.first().fill(String(value));
   await input.first().press('Enter');
 }

@@ -1,6 +1,6 @@
-// Proves the accuracy tab in every state that a daemon may bring it to. Chromium opens the client of a running daemon,
-// but the measurements are made up, so that figures, failures and refusals are known and come when the test says so.
-// browser_accuracy_daemon.test.mjs uses real measurements.
+// Proves the accuracy tab in every state that a daemon may bring it to. Chromium opens the client
+// of a running daemon, but the measurements are made up, so that figures, failures and refusals are
+// known and come when the test says so. browser_accuracy_daemon.test.mjs uses real measurements.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -11,7 +11,8 @@ import { openScene } from './browser.mjs';
 const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 const RED_PNG = Buffer.from(
-  'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGP4z8DwHwAFAAH/iZk9HQAAAABJRU5ErkJggg==',
+  'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGP4z8DwHwAFAAH/' +
+    'iZk9HQAAAABJRU5ErkJggg==',
   'base64',
 );
 
@@ -25,9 +26,19 @@ function rung(name, method, ms, flip) {
     frame_ms: { median: ms, p95: 2 * ms, frames: 9 },
     memory_bytes: 3 << 20,
     cold: { ms: 5 * ms, metrics: metrics(2 * flip) },
-    converged: { ms: 50 * ms, frames: 20, settled: true, metrics: metrics(flip), indirect: metrics(flip) },
+    converged: {
+      ms: 50 * ms,
+      frames: 20,
+      settled: true,
+      metrics: metrics(flip),
+      indirect: metrics(flip),
+    },
     edit: { arrived_ms: 7 * ms },
-    pictures: { converged: `${name}-converged.png`, error: `${name}-error.png`, strip: `${name}-strip.png` },
+    pictures: {
+      converged: `${name}-converged.png`,
+      error: `${name}-error.png`,
+      strip: `${name}-strip.png`,
+    },
   };
 }
 
@@ -46,16 +57,27 @@ function fakeMeasuring() {
   const made = { calls: [], refusal: '', id: 0 };
   globalThis.made = made;
   connection.call = (method, params) => {
-    if (!method.startsWith('accuracy.') && !(method === 'view.configure' && 'rung' in params)) return real(method, params);
+    if (!method.startsWith('accuracy.') && !(method === 'view.configure' && 'rung' in params))
+      return real(method, params);
     made.calls.push({ method, params });
     if (made.refusal) return Promise.reject(Object.assign(new Error(made.refusal), { data: {} }));
     if (method !== 'accuracy.start') return Promise.resolve({});
     return real('scene.get').then(({ epoch, revision }) => {
-      return { measurement: `m${++made.id}`, rung_count: 5, width: 64, height: 36, epoch, revision };
+      return {
+        measurement: `m${++made.id}`,
+        rung_count: 5,
+        width: 64,
+        height: 36,
+        epoch,
+        revision,
+      };
     });
   };
   made.tell = (params) => {
-    const detail = { method: 'accuracy.progress', params: { measurement: `m${made.id}`, rung_count: 5, done: 0, noise_wanted: 0.01, ...params } };
+    const detail = {
+      method: 'accuracy.progress',
+      params: { measurement: `m${made.id}`, rung_count: 5, done: 0, noise_wanted: 0.01, ...params },
+    };
     connection.dispatchEvent(new CustomEvent('notification', { detail }));
   };
 }
@@ -68,9 +90,15 @@ describe('the tab of accuracy', () => {
     ({ page } = client);
     await page.evaluate(axe);
     await page.evaluate(fakeMeasuring);
-    const view = await page.evaluate(() => ({ ...globalThis.voxcast.camera.pose, ...globalThis.voxcast.view.size }));
+    const view = await page.evaluate(() => ({
+      ...globalThis.voxcast.camera.pose,
+      ...globalThis.voxcast.view.size,
+    }));
     results = {
-      setup: { scene: { source: 'builtin:cornell', ...view }, reference: { noise: 0.01, direct: true } },
+      setup: {
+        scene: { source: 'builtin:cornell', ...view },
+        reference: { noise: 0.01, direct: true },
+      },
       metrics: [
         { name: 'energy_red', title: 'energy ratio, red', unit: '' },
         { name: 'ssim', title: 'SSIM', unit: '' },
@@ -78,12 +106,17 @@ describe('the tab of accuracy', () => {
         { name: 'not_finite', title: 'pixels not finite', unit: '' },
       ],
       rungs: [],
-      noise: { metrics: { ldr_flip: { reference: 0.02, smallest: 0.05, enough: false } }, indirect: {} },
+      noise: {
+        metrics: { ldr_flip: { reference: 0.02, smallest: 0.05, enough: false } },
+        indirect: {},
+      },
     };
     await page.route('**/accuracy/**', (route) => {
       const isJson = route.request().url().endsWith('results.json');
       if (!isJson) return route.fulfill({ body: RED_PNG, contentType: 'image/png' });
-      return results.rungs.length > 0 ? route.fulfill({ json: results }) : route.fulfill({ status: 404, body: 'not found' });
+      return results.rungs.length > 0
+        ? route.fulfill({ json: results })
+        : route.fulfill({ status: 404, body: 'not found' });
     });
     await page.locator('#tab-accuracy').click();
   });
@@ -105,11 +138,17 @@ describe('the tab of accuracy', () => {
     for (let i = 0; i < index; i++) await page.keyboard.press('ArrowRight');
   };
   const untilText = (pattern) =>
-    page.waitForFunction((source) => new RegExp(source).test(document.getElementById('panel-accuracy').innerText), pattern.source);
+    page.waitForFunction(
+      (source) => new RegExp(source).test(document.getElementById('panel-accuracy').innerText),
+      pattern.source,
+    );
   const measured = async (count, progress) => {
     results.rungs = RUNGS.slice(0, count);
     await tell(progress);
-    await page.waitForFunction((wanted) => document.querySelectorAll('.error-chart .point').length === wanted, count);
+    await page.waitForFunction(
+      (wanted) => document.querySelectorAll('.error-chart .point').length === wanted,
+      count,
+    );
   };
   const seriousFaults = async () => {
     const { violations } = await page.evaluate(() => globalThis.axe.run());
@@ -128,7 +167,9 @@ describe('the tab of accuracy', () => {
   });
 
   test('a refusal is told and the form stays', async () => {
-    await page.evaluate(() => (globalThis.made.refusal = 'noise: 2 is out of range; allowed are 0.0005 to 0.1'));
+    await page.evaluate(
+      () => (globalThis.made.refusal = 'noise: 2 is out of range; allowed are 0.0005 to 0.1'),
+    );
     await button('Measure this view').click();
     await page.locator('.toast.error', { hasText: 'noise: 2 is out of range' }).waitFor();
     await page.evaluate(() => (globalThis.made.refusal = ''));
@@ -137,14 +178,22 @@ describe('the tab of accuracy', () => {
   });
 
   test('measures by the chosen ladder and noise, and shows how the truth comes along', async () => {
-    await panel().locator('.lil-controller', { hasText: 'Settings' }).locator('select').selectOption({ label: 'Full: each setting' });
+    await panel()
+      .locator('.lil-controller', { hasText: 'Settings' })
+      .locator('select')
+      .selectOption({ label: 'Full: each setting' });
     const noise = panel().locator('.lil-controller', { hasText: 'Noise' }).locator('input');
     await noise.fill('0.5');
     await noise.press('Enter');
-    await panel().locator('.lil-controller', { hasText: 'At most for' }).locator('select').selectOption({ label: '5 min' });
+    await panel()
+      .locator('.lil-controller', { hasText: 'At most for' })
+      .locator('select')
+      .selectOption({ label: '5 min' });
     await button('Measure this view').click();
     await untilText(/Waits until another measurement has ended/);
-    assert.deepEqual(await calls(), [{ method: 'accuracy.start', params: { ladder: 'full', noise: 0.005, seconds: 300 } }]);
+    assert.deepEqual(await calls(), [
+      { method: 'accuracy.start', params: { ladder: 'full', noise: 0.005, seconds: 300 } },
+    ]);
     await tell({ state: 'reference', samples: 64, noise: null, seconds_left: null });
     assert.match(await text(), /64 samples a pixel, noise not known yet \(wanted: 1 %\)\./);
     assert.equal(await panel().locator('progress').getAttribute('value'), null);
@@ -158,7 +207,10 @@ describe('the tab of accuracy', () => {
   test('points come as they are measured', async () => {
     await measured(1, { state: 'rungs', done: 1, rung: 'none', seconds_left: 100 });
     assert.match(await text(), /Measured 1 of 5 settings; now none\. About 2 min left/);
-    assert.equal(await panel().locator('.visually-hidden[role=status]').innerText(), 'The settings are being measured.');
+    assert.equal(
+      await panel().locator('.visually-hidden[role=status]').innerText(),
+      'The settings are being measured.',
+    );
     await measured(3, { state: 'rungs', done: 3, rung: 'high' });
     assert.equal(await page.locator('.error-chart .ring.live').count(), 1);
   });
@@ -183,15 +235,24 @@ describe('the tab of accuracy', () => {
     await untilText(/Waits until another measurement has ended/);
     await measured(5, { state: 'done', done: 5 });
     assert.match(await text(), /Measured 5 of 5 settings/);
-    assert.match(await text(), /reference image itself errs by 0\.02, more than a tenth of the least error \(0\.05\)/);
+    assert.match(
+      await text(),
+      /reference image itself errs by 0\.02, more than a tenth of the least error \(0\.05\)/,
+    );
     await calls();
   });
 
   test('a point shows its setting, figures and picture, by mouse and by keys', async () => {
     const tip = page.locator('.error-tip');
     await point('draft').hover();
-    assert.match(await tip.innerText(), /draft\s+preset high, gi_method clipmap\s+LDR-FLIP\s+0\.2\s+frame\s+20 ms\s+memory\s+3 MiB/);
-    assert.match(await tip.locator('img').getAttribute('src'), /accuracy\/m3\/draft-converged\.png$/);
+    assert.match(
+      await tip.innerText(),
+      /draft\s+preset high, gi_method clipmap\s+LDR-FLIP\s+0\.2\s+frame\s+20 ms\s+memory\s+3 MiB/,
+    );
+    assert.match(
+      await tip.locator('img').getAttribute('src'),
+      /accuracy\/m3\/draft-converged\.png$/,
+    );
     await page.mouse.move(200, 300);
     assert.ok(!(await tip.isVisible()));
     // The Tab key reaches one of all points.
@@ -234,9 +295,15 @@ describe('the tab of accuracy', () => {
 
   test('a budget picks the most accurate setting, or says that nothing fits', async () => {
     await setBudget(0);
-    assert.match(await text(), /Within 16 ms: none, LDR-FLIP 0\.5, 10 ms a frame, 500 ms to the final picture/);
+    assert.match(
+      await text(),
+      /Within 16 ms: none, LDR-FLIP 0\.5, 10 ms a frame, 500 ms to the final picture/,
+    );
     await setBudget(1);
-    assert.match(await text(), /Within 33 ms: own settings as measured, LDR-FLIP 0\.15, 25 ms a frame/);
+    assert.match(
+      await text(),
+      /Within 33 ms: own settings as measured, LDR-FLIP 0\.15, 25 ms a frame/,
+    );
     await setBudget(2);
     assert.match(await text(), /Within 100 ms: high/);
     await setBudget(3);
@@ -244,10 +311,15 @@ describe('the tab of accuracy', () => {
     assert.equal(await slider().getAttribute('aria-valuetext'), 'still: final');
     const rungs = (await calls()).map(({ params }) => params.rung);
     assert.equal(rungs.at(-1), 'final');
-    results.rungs = RUNGS.map((entry) => ({ ...entry, frame_ms: { median: entry.frame_ms.median + 40 } }));
+    results.rungs = RUNGS.map((entry) => ({
+      ...entry,
+      frame_ms: { median: entry.frame_ms.median + 40 },
+    }));
     await tell({ state: 'done', done: 4 });
     await setBudget(1);
-    await untilText(/Nothing measured keeps 33 ms: the fastest, none, takes 50 ms a frame \(LDR-FLIP 0\.5\)/);
+    await untilText(
+      /Nothing measured keeps 33 ms: the fastest, none, takes 50 ms a frame \(LDR-FLIP 0\.5\)/,
+    );
     assert.ok(!(await button('Draw with it').isVisible()));
     results.rungs = RUNGS;
     await tell({ state: 'done', done: 5 });
@@ -260,10 +332,14 @@ describe('the tab of accuracy', () => {
 
   test('the truth lies right of a line that mouse and keys move', async () => {
     await mode('split').check();
-    const divider = page.getByRole('slider', { name: 'Line between live picture and reference image' });
+    const divider = page.getByRole('slider', {
+      name: 'Line between live picture and reference image',
+    });
     const truth = page.locator('#comparison-pictures img').first();
     assert.match(await truth.getAttribute('src'), /accuracy\/m3\/reference\.png$/);
-    await page.waitForFunction(() => document.querySelector('#comparison-pictures img').naturalWidth > 0);
+    await page.waitForFunction(
+      () => document.querySelector('#comparison-pictures img').naturalWidth > 0,
+    );
     assert.equal(await divider.getAttribute('aria-valuenow'), '50');
     const stage = await page.locator('#stage').boundingBox();
     await page.mouse.move(stage.x + stage.width / 2, stage.y + 200);
@@ -288,7 +364,9 @@ describe('the tab of accuracy', () => {
     const map = page.locator('#comparison-pictures img').last();
     assert.match(await map.getAttribute('src'), /live-error\.png$/);
     await point('draft').click();
-    await page.waitForFunction(() => /draft-error\.png$/.test(document.querySelectorAll('#comparison-pictures img')[1].src));
+    await page.waitForFunction(() =>
+      /draft-error\.png$/.test(document.querySelectorAll('#comparison-pictures img')[1].src),
+    );
     assert.ok(await page.locator('.heat-legend').isVisible());
     assert.match(await page.locator('#badge').innerText(), /draft|final/);
     assert.deepEqual(await seriousFaults(), []);
@@ -308,28 +386,47 @@ describe('the tab of accuracy', () => {
 
   test('tells that the scene has been edited since', async () => {
     assert.ok(!(await panel().locator('.note').isVisible()));
-    await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { exposure_ev: 0.1 } }));
+    await page.evaluate(() =>
+      globalThis.voxcast.connection.call('settings.update', { set: { exposure_ev: 0.1 } }),
+    );
     await untilText(/The settings have changed since/);
-    await page.evaluate(() => globalThis.voxcast.connection.call('material.update', { id: 0, set: { roughness: 0.5 } }));
+    await page.evaluate(() =>
+      globalThis.voxcast.connection.call('material.update', { id: 0, set: { roughness: 0.5 } }),
+    );
     await untilText(/The scene has been edited since it was measured/);
   });
 
   test('fits a phone, where the tip stands above the panel', async () => {
     await page.setViewportSize({ width: 390, height: 844 });
-    await page.waitForFunction(() => document.querySelector('.error-chart').viewBox.baseVal.width === document.querySelector('.error-figure').clientWidth);
-    const widths = await page.evaluate(() => [document.documentElement.scrollWidth, document.getElementById('panel-accuracy').scrollWidth - document.getElementById('panel-accuracy').clientWidth]);
+    await page.waitForFunction(
+      () =>
+        document.querySelector('.error-chart').viewBox.baseVal.width ===
+        document.querySelector('.error-figure').clientWidth,
+    );
+    const widths = await page.evaluate(() => [
+      document.documentElement.scrollWidth,
+      document.getElementById('panel-accuracy').scrollWidth -
+        document.getElementById('panel-accuracy').clientWidth,
+    ]);
     assert.deepEqual(widths, [390, 0]);
     await untilText(/./);
     await page.locator('#comparison .stage-hint', { hasText: 'another shape' }).waitFor();
     await point('high').scrollIntoViewIfNeeded();
     await point('high').hover();
-    const [tip, sheet] = await Promise.all(['.error-tip', '.panel'].map((name) => page.locator(name).boundingBox()));
-    assert.ok(tip.y >= 0 && tip.y + tip.height <= sheet.y, `${JSON.stringify(tip)} ${JSON.stringify(sheet)}`);
+    const [tip, sheet] = await Promise.all(
+      ['.error-tip', '.panel'].map((name) => page.locator(name).boundingBox()),
+    );
+    assert.ok(
+      tip.y >= 0 && tip.y + tip.height <= sheet.y,
+      `${JSON.stringify(tip)} ${JSON.stringify(sheet)}`,
+    );
     await page.setViewportSize({ width: 1280, height: 800 });
   });
 
   test('another scene forgets it all', async () => {
-    await page.evaluate(() => globalThis.voxcast.connection.call('scene.load', { source: 'builtin:furnace' }));
+    await page.evaluate(() =>
+      globalThis.voxcast.connection.call('scene.load', { source: 'builtin:furnace' }),
+    );
     await untilText(/Nothing has been measured yet/);
     assert.equal(await page.evaluate(() => globalThis.voxcast.view.rung), '');
     assert.ok(!(await page.locator('#comparison').isVisible()));

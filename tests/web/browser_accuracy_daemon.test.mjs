@@ -1,5 +1,6 @@
-// Proves that the accuracy tab and the daemon work together: Chromium measures a small view of the Cornell box, draws
-// with what it found, lays reference image and errors over the image, and cancels a second measurement.
+// Proves that the accuracy tab and the daemon work together: Chromium measures a small view of the
+// Cornell box, draws with what it found, lays reference image and errors over the image, and
+// cancels a second measurement.
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 
@@ -18,9 +19,14 @@ describe('the tab of accuracy and the daemon', () => {
       const { connection, view } = globalThis.voxcast;
       const height = Math.round((width * view.size.height) / view.size.width);
       await connection.call('view.configure', { width, height });
-      await connection.call('settings.update', { set: { gi_method: 'clipmap', voxel_resolution: '64' } });
+      await connection.call('settings.update', {
+        set: { gi_method: 'clipmap', voxel_resolution: '64' },
+      });
     }, WIDTH);
-    await page.waitForFunction((width) => document.getElementById('picture').width === width, WIDTH);
+    await page.waitForFunction(
+      (width) => document.getElementById('picture').width === width,
+      WIDTH,
+    );
     await page.locator('#tab-accuracy').click();
   });
   after(async () => {
@@ -35,19 +41,27 @@ describe('the tab of accuracy and the daemon', () => {
     await noise.press('Enter');
   };
   const untilText = (pattern) =>
-    page.waitForFunction((source) => new RegExp(source).test(document.getElementById('panel-accuracy').innerText), pattern.source);
+    page.waitForFunction(
+      (source) => new RegExp(source).test(document.getElementById('panel-accuracy').innerText),
+      pattern.source,
+    );
   const point = (name) => page.locator(`.error-chart .point[data-rung=${name}]`);
   const isLoaded = (index) =>
-    page.waitForFunction((at) => document.querySelectorAll('#comparison-pictures img')[at].naturalWidth > 0, index);
+    page.waitForFunction(
+      (at) => document.querySelectorAll('#comparison-pictures img')[at].naturalWidth > 0,
+      index,
+    );
   const untilDrawnWith = async (name) => {
     await untilText(new RegExp(`Drawn with ${name}`));
     await page.waitForFunction(
-      (wanted) => document.getElementById('stage').dataset.converged === 'true' && document.getElementById('badge').innerText.startsWith(wanted),
+      (wanted) =>
+        document.getElementById('stage').dataset.converged === 'true' &&
+        document.getElementById('badge').innerText.startsWith(wanted),
       name,
     );
   };
 
-  test('measures this view: the truth comes along, then points, and the live one is marked', async () => {
+  test('measures this view: the truth comes, then points, and the live one is marked', async () => {
     await setNoise(8);
     await button('Measure this view').click();
     await untilText(/samples a pixel|Measured \d of 6 settings/);
@@ -86,7 +100,11 @@ describe('the tab of accuracy and the daemon', () => {
   test('truth and errors lie over the picture while the camera is the measured one', async () => {
     await page.locator('input[value=split]').check();
     await isLoaded(0);
-    assert.ok(await page.getByRole('slider', { name: 'Line between live picture and reference image' }).isVisible());
+    assert.ok(
+      await page
+        .getByRole('slider', { name: 'Line between live picture and reference image' })
+        .isVisible(),
+    );
     await page.locator('input[value=error]').check();
     await isLoaded(1);
     assert.ok(await page.locator('.heat-legend').isVisible());
@@ -99,7 +117,9 @@ describe('the tab of accuracy and the daemon', () => {
   });
 
   test('a refusal of the daemon is told', async () => {
-    const message = await page.evaluate(() => globalThis.voxcast.view.chooseRung('nonesuch').catch((error) => error.message));
+    const message = await page.evaluate(() =>
+      globalThis.voxcast.view.chooseRung('nonesuch').catch((error) => error.message),
+    );
     assert.match(message, /nonesuch.*live/);
   });
 

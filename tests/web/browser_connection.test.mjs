@@ -1,5 +1,6 @@
-// Proves what the client does when the server goes away, refuses a token or refuses a foreign page: the test stops and
-// starts daemons under a running Chromium, and speaks to them with the ws package.
+// Proves what the client does when the server goes away, refuses a token or refuses a foreign page:
+// the test stops and starts daemons under a running Chromium, and speaks to them with the ws
+// package.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -34,16 +35,24 @@ describe('a server that goes away', () => {
     await page.locator('[data-light]').waitFor();
     await stopDaemon(daemon);
     const state = page.locator('#connection');
-    await page.waitForFunction(() => document.getElementById('connection').dataset.state !== 'open');
+    await page.waitForFunction(
+      () => document.getElementById('connection').dataset.state !== 'open',
+    );
     daemon = await startDaemon(['--scene', 'builtin:cornell', '--port', String(daemon.port)]);
     await page.locator('#connection[data-state=open]').waitFor();
     assert.equal(await state.innerText(), 'Connected');
     // As openClient() does: the new server has indirect light again.
-    await page.evaluate(() => globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }));
+    await page.evaluate(() =>
+      globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }),
+    );
     await untilStill(page, 1000);
     assert.equal(await page.locator('[data-light]').count(), 0, 'the new server has no such light');
     // Nothing shows which image at rest is the first without indirect light.
-    for (const end = Date.now() + PATIENCE_MS; difference(turned, await pixels(page)) >= 1; await untilStill(page, 1000))
+    for (
+      const end = Date.now() + PATIENCE_MS;
+      difference(turned, await pixels(page)) >= 1;
+      await untilStill(page, 1000)
+    )
       assert.ok(Date.now() < end, 'the camera stays where it was');
   });
 });
@@ -83,7 +92,9 @@ describe('a server with a token', () => {
   });
 
   test('refuses a page from elsewhere', async () => {
-    await assert.rejects(Client.open(daemon.url, { origin: 'http://elsewhere.example' }), { status: 403 });
+    await assert.rejects(Client.open(daemon.url, { origin: 'http://elsewhere.example' }), {
+      status: 403,
+    });
     const client = await Client.open(daemon.url, { origin: daemon.http });
     await client.close();
   });

@@ -1,9 +1,17 @@
-// Proves that edits in the panel change the image, here and in another browser: two Chromiums open the client of one
-// daemon; the test adds and changes a light and a material and compares pixels.
+// Proves that edits in the panel change the image, here and in another browser: two Chromiums open
+// the client of one daemon; the test adds and changes a light and a material and compares pixels.
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 
-import { difference, meanColor, openBrowser, openClient, pixels, setParameter, untilStill } from './browser.mjs';
+import {
+  difference,
+  meanColor,
+  openBrowser,
+  openClient,
+  pixels,
+  setParameter,
+  untilStill,
+} from './browser.mjs';
 import { startDaemon, stopDaemon } from './client.mjs';
 
 const mean = ([r, g, b]) => (r + g + b) / 3;
@@ -26,7 +34,9 @@ describe('edits', () => {
   test('a fixed exposure and an added light brighten the picture', async () => {
     const { page } = ours;
     await page.locator('#tab-light').click();
-    await page.locator('[data-parameter="settings.exposure_mode"] select').selectOption({ label: 'Fixed' });
+    await page
+      .locator('[data-parameter="settings.exposure_mode"] select')
+      .selectOption({ label: 'Fixed' });
     await untilStill(page);
     const dark = mean(await meanColor(page));
     await page.locator('[data-add-light=point]').click();
@@ -105,7 +115,10 @@ describe('edits', () => {
     await page.mouse.up();
     await untilStill(page);
     const moved = await page.locator('.light-icon .disc').boundingBox();
-    assert.ok(Math.abs(moved.x - box.x - 150) < 3 && Math.abs(moved.y - box.y - 60) < 3, JSON.stringify(moved));
+    assert.ok(
+      Math.abs(moved.x - box.x - 150) < 3 && Math.abs(moved.y - box.y - 60) < 3,
+      JSON.stringify(moved),
+    );
     assert.ok(difference(before, await pixels(page)) > 2);
     await page.locator('#tool-undo').click();
     await untilStill(page);

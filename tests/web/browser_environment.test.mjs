@@ -1,5 +1,6 @@
-// Proves that the panel offers the server's environment images if there are any, loads one, and says why one could not
-// be loaded: Chromium opens the client of a daemon with a folder of small images.
+// Proves that the panel offers the server's environment images if there are any, loads one, and
+// says why one could not be loaded: Chromium opens the client of a daemon with a folder of small
+// images.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -37,7 +38,10 @@ describe('environment images', () => {
   const loader = () => page.locator('.loader', { has: page.locator('#environment-image') });
 
   test('a loaded image colours the picture and is shown as chosen', async () => {
-    assert.deepEqual(await page.locator('#environment-image option').allTextContents(), ['broken.hdr', 'red.hdr']);
+    assert.deepEqual(await page.locator('#environment-image option').allTextContents(), [
+      'broken.hdr',
+      'red.hdr',
+    ]);
     const [red, green] = await meanColor(page);
     const frame = await page.locator('#stage').getAttribute('data-frame');
     await page.locator('#environment-image').selectOption('red.hdr');
@@ -47,9 +51,15 @@ describe('environment images', () => {
     await page.locator(`#stage:not([data-frame="${frame}"])`).waitFor();
     await untilStill(page);
     const [redder, greener] = await meanColor(page);
-    assert.ok(redder / greener > 1.2 * (red / green), `${red} / ${green} became ${redder} / ${greener}`);
+    assert.ok(
+      redder / greener > 1.2 * (red / green),
+      `${red} / ${green} became ${redder} / ${greener}`,
+    );
     const type = page.locator('[data-parameter="environment.type"] select');
-    assert.match(await type.evaluate((select) => select.selectedOptions[0].textContent), /equirect/i);
+    assert.match(
+      await type.evaluate((select) => select.selectedOptions[0].textContent),
+      /equirect/i,
+    );
     assert.ok(await loader().locator('progress').isHidden());
   });
 
@@ -58,7 +68,10 @@ describe('environment images', () => {
     await loader().locator('button').click();
     await page.getByText(/truncated or damaged/).first().waitFor();
     assert.ok(await loader().locator('button').isEnabled());
-    assert.equal(await page.evaluate(() => globalThis.voxcast.document.data.environment.image), 'red.hdr');
+    assert.equal(
+      await page.evaluate(() => globalThis.voxcast.document.data.environment.image),
+      'red.hdr',
+    );
   });
 
   test('without a folder there is no list', async () => {

@@ -1,5 +1,5 @@
-// Proves that a person sees the scene and can move in it: Chromium opens the client of a running daemon, and the test
-// looks at the canvas, uses mouse and keys, and runs axe-core on the page.
+// Proves that a person sees the scene and can move in it: Chromium opens the client of a running
+// daemon, and the test looks at the canvas, uses mouse and keys, and runs axe-core on the page.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -91,7 +91,13 @@ describe('the picture', () => {
     const send = (type, spread) =>
       touch.send('Input.dispatchTouchEvent', {
         type,
-        touchPoints: spread === null ? [] : [{ x: 450 - spread, y: 400, id: 1 }, { x: 450 + spread, y: 400, id: 2 }],
+        touchPoints:
+          spread === null
+            ? []
+            : [
+                { x: 450 - spread, y: 400, id: 1 },
+                { x: 450 + spread, y: 400, id: 2 },
+              ],
       });
     await send('touchStart', 50);
     for (const spread of [60, 70, 80, 90, 100]) await send('touchMove', spread);

@@ -1,5 +1,5 @@
-// Proves that the render tab shows and changes how images are made: Chromium opens the client of a running daemon; a
-// second client without a browser watches and edits the same settings.
+// Proves that the render tab shows and changes how images are made: Chromium opens the client of a
+// running daemon; a second client without a browser watches and edits the same settings.
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 
@@ -26,7 +26,9 @@ describe('the tab of rendering', () => {
 
   test('tells the quality of the picture and that it is done', async () => {
     await page.evaluate(() => globalThis.voxcast.view.configure({ quality: 'final' }));
-    await page.waitForFunction(() => /final\s+done/.test(document.getElementById('badge').innerText));
+    await page.waitForFunction(() =>
+      /final\s+done/.test(document.getElementById('badge').innerText),
+    );
     await page.evaluate(() => {
       const badge = document.getElementById('badge');
       globalThis.seenTexts = [];
@@ -37,21 +39,31 @@ describe('the tab of rendering', () => {
     await page.keyboard.down('ArrowLeft');
     await page.waitForTimeout(400);
     await page.keyboard.up('ArrowLeft');
-    await page.waitForFunction(() => globalThis.seenTexts.some((text) => /(interactive|draft)\s+\d+ %/.test(text)));
+    await page.waitForFunction(() =>
+      globalThis.seenTexts.some((text) => /(interactive|draft)\s+\d+ %/.test(text)),
+    );
     await page.locator('#badge.done').waitFor();
   });
 
   test('a chosen method reaches the server, and another client changes it back', async () => {
     await parameter('settings.gi_method').locator('select').selectOption({ label: 'Clipmap' });
-    await other.until(() => other.notifications.some((n) => n.params?.edits?.[0].set.gi_method === 'clipmap'), 'the edit');
+    await other.until(
+      () => other.notifications.some((n) => n.params?.edits?.[0].set.gi_method === 'clipmap'),
+      'the edit',
+    );
     assert.equal(await setting('gi_method'), 'clipmap');
     await other.call('settings.update', { set: { gi_method: 'grid' } });
     await page.waitForFunction(
-      () => document.querySelector('[data-parameter="settings.gi_method"] .lil-display').textContent === 'Grid',
+      () =>
+        document.querySelector('[data-parameter="settings.gi_method"] .lil-display').textContent ===
+        'Grid',
     );
     await parameter('settings.cone_set').locator('select').selectOption('16\u00a0');
     await setParameter(page, 'settings.bounces', 3);
-    await other.until(() => other.notifications.some((n) => n.params?.edits?.[0].set.bounces === 3), 'the edit');
+    await other.until(
+      () => other.notifications.some((n) => n.params?.edits?.[0].set.bounces === 3),
+      'the edit',
+    );
     assert.equal(await setting('cone_set'), '16');
   });
 
@@ -103,7 +115,9 @@ describe('the tab of rendering', () => {
   test('a chosen quality is the one the picture rests at', async () => {
     await parameter('settings.gi_method').locator('select').selectOption({ label: 'None' });
     await parameter('view.quality').locator('select').selectOption({ label: 'High' });
-    await page.waitForFunction(() => /high\s+done/.test(document.getElementById('badge').innerText));
+    await page.waitForFunction(() =>
+      /high\s+done/.test(document.getElementById('badge').innerText),
+    );
     await parameter('view.adaptive').locator('input').uncheck();
     assert.equal(await parameter('view.target_frame_ms').getAttribute('data-why'), 'adaptive only');
   });

@@ -6,8 +6,8 @@ const require = createRequire(new URL('../../web_client/package.json', import.me
 const WebSocket = require('ws');
 
 /**
- * No test waits longer. What tests wait for takes less than a tenth of it on two slow cores without a GPU, under
- * sanitizers. The limit ends tests that hang; it does not judge speed.
+ * No test waits longer. What tests wait for takes less than a tenth of it on two slow cores without
+ * a GPU, under sanitizers. The limit ends tests that hang; it does not judge speed.
  */
 export const PATIENCE_MS = 600000;
 
@@ -18,8 +18,20 @@ export const PATIENCE_MS = 600000;
 export async function startDaemon(args = [], { env = {}, before = ':' } = {}) {
   const program = process.env.VOXCASTD;
   if (!program) throw new Error('VOXCASTD must name the program to test');
-  const start = ['-c', `${before}; exec "$0" "$@"`, program, '--port', '0', '--log-level', 'warn', ...args];
-  const child = spawn('/bin/sh', start, { stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ...env } });
+  const start = [
+    '-c',
+    `${before}; exec "$0" "$@"`,
+    program,
+    '--port',
+    '0',
+    '--log-level',
+    'warn',
+    ...args,
+  ];
+  const child = spawn('/bin/sh', start, {
+    stdio: ['ignore', 'pipe', 'pipe'],
+    env: { ...process.env, ...env },
+  });
   const daemon = { child, log: '', exit: new Promise((done) => child.on('exit', done)) };
   child.stderr.on('data', (data) => (daemon.log += data));
   const line = await new Promise((resolve, reject) => {

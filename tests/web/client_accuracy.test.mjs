@@ -1,5 +1,6 @@
-// Proves what the panel's accuracy tab computes, without a browser: which configuration fits a budget, when two cameras
-// see the same, the colours of the error map, and the state of a measurement from the server's messages.
+// Proves what the panel's accuracy tab computes, without a browser: which configuration fits a
+// budget, when two cameras see the same, the colours of the error map, and the state of a
+// measurement from the server's messages.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -19,10 +20,20 @@ globalThis.CustomEvent ??= class extends Event {
   }
 };
 
-const rung = (name, ms, flip) => ({ name, frame_ms: { median: ms }, converged: { ms: 10 * ms, metrics: { ldr_flip: flip } } });
+const rung = (name, ms, flip) => ({
+  name,
+  frame_ms: { median: ms },
+  converged: { ms: 10 * ms, metrics: { ldr_flip: flip } },
+});
 
 test('a budget calls for the least error among what is fast enough', () => {
-  const rungs = [rung('none', 5, 0.4), rung('draft', 16, 0.2), rung('good', 30, 0.1), rung('worse', 31, 0.15), rung('best', 900, 0.05)];
+  const rungs = [
+    rung('none', 5, 0.4),
+    rung('draft', 16, 0.2),
+    rung('good', 30, 0.1),
+    rung('worse', 31, 0.15),
+    rung('best', 900, 0.05),
+  ];
   const names = [16, 33, 100, Infinity].map((ms) => pickRung(rungs, ms).best.name);
   assert.deepEqual(names, ['draft', 'good', 'good', 'best']);
   const slow = pickRung(rungs, 4);
@@ -31,7 +42,12 @@ test('a budget calls for the least error among what is fast enough', () => {
 });
 
 test('of equal errors the faster is taken; what has no figures is left out', () => {
-  const rungs = [rung('slow', 20, 0.1), rung('fast', 10, 0.1), rung('broken', 1, null), { name: 'empty' }];
+  const rungs = [
+    rung('slow', 20, 0.1),
+    rung('fast', 10, 0.1),
+    rung('broken', 1, null),
+    { name: 'empty' },
+  ];
   assert.equal(pickRung(rungs, 33).best.name, 'fast');
   assert.deepEqual(pickRung([{ name: 'empty' }], 33), { best: null, fastest: null });
 });
@@ -39,7 +55,12 @@ test('of equal errors the faster is taken; what has no figures is left out', () 
 const pose = { eye: [0, 1, 4], target: [0, 1, 0], up: [0, 1, 0], fov_y_rad: 0.7 };
 
 test('a pose is the same in single precision and with another target ahead', () => {
-  const single = Object.fromEntries(Object.entries(pose).map(([key, value]) => [key, Array.isArray(value) ? value.map(Math.fround) : Math.fround(value)]));
+  const single = Object.fromEntries(
+    Object.entries(pose).map(([key, value]) => [
+      key,
+      Array.isArray(value) ? value.map(Math.fround) : Math.fround(value),
+    ]),
+  );
   assert.ok(isSamePose(pose, single));
   assert.ok(isSamePose(pose, { ...pose, target: [0, 1, 3], up: [0, 2, 0.5] }));
 });
@@ -55,7 +76,17 @@ test('a pose is another one by a pixel of place, direction, roll or lens', () =>
 
 test('the scale has the colours that the server paints errors with', () => {
   // heat_map_color() of renderer/metrics/heat_map.c, at eighths.
-  const painted = [[0, 0, 0], [13, 0, 22], [59, 0, 51], [116, 0, 62], [179, 0, 45], [214, 82, 0], [232, 143, 30], [229, 203, 141], [245, 245, 245]];
+  const painted = [
+    [0, 0, 0],
+    [13, 0, 22],
+    [59, 0, 51],
+    [116, 0, 62],
+    [179, 0, 45],
+    [214, 82, 0],
+    [232, 143, 30],
+    [229, 203, 141],
+    [245, 245, 245],
+  ];
   painted.forEach((color, i) => {
     const difference = heatMapColor(i / 8).map((value, c) => Math.abs(value - color[c]));
     assert.ok(Math.max(...difference) <= 1, `${i}: ${heatMapColor(i / 8)}`);
@@ -63,7 +94,13 @@ test('the scale has the colours that the server paints errors with', () => {
 });
 
 test('numbers read well', () => {
-  assert.deepEqual([0.4, 89, 90, 3600, 7200].map(durationText), ['1 s', '89 s', '2 min', '60 min', '2.0 h']);
+  assert.deepEqual([0.4, 89, 90, 3600, 7200].map(durationText), [
+    '1 s',
+    '89 s',
+    '2 min',
+    '60 min',
+    '2.0 h',
+  ]);
   assert.equal(durationText(null), '');
   assert.deepEqual([3.14, 16.4, 1234, 45678].map(msText), ['3.1 ms', '16 ms', '1.2 s', '46 s']);
   assert.equal(percentText(0.0312), '3.1 %');
@@ -127,7 +164,8 @@ test('what ends while results are on their way is read once more', async () => {
   const { server, measurement } = both;
   await begin(both);
   const count = server.fetched.length;
-  for (let done = 0; done <= 3; done++) measurement.takeProgress({ measurement: 'a1', state: 'rungs', done, rung_count: 6 });
+  for (let done = 0; done <= 3; done++)
+    measurement.takeProgress({ measurement: 'a1', state: 'rungs', done, rung_count: 6 });
   await settle();
   assert.equal(server.fetched.length - count, 2);
 });

@@ -1,12 +1,23 @@
-// Proves the client's maths without a browser: projection against values worked out by hand and against its own
-// inverse, rotations against known ones, node placements against their inverse, the camera's movements by what must
-// stay constant, and the size of the image.
+// Proves the client's maths without a browser: projection against values worked out by hand and
+// against its own inverse, rotations against known ones, node placements against their inverse, the
+// camera's movements by what must stay constant, and the size of the image.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { mapDirection, multiply, parentFromNode, mapPoint, unmapDirection } from '../../web_client/math/affine.js';
+import {
+  mapDirection,
+  multiply,
+  parentFromNode,
+  mapPoint,
+  unmapDirection,
+} from '../../web_client/math/affine.js';
 import { linearFromSrgb, srgbFromLinear } from '../../web_client/math/color.js';
-import { closestOnAxis, meetPlane, projectPoint, rayThrough } from '../../web_client/math/projection.js';
+import {
+  closestOnAxis,
+  meetPlane,
+  projectPoint,
+  rayThrough,
+} from '../../web_client/math/projection.js';
 import { fromEulerDegrees, rotate, toEulerDegrees } from '../../web_client/math/quaternion.js';
 import { add, length, scale, subtract } from '../../web_client/math/vector.js';
 import { Camera } from '../../web_client/view/camera.js';
@@ -17,7 +28,10 @@ function near(actual, expected, tolerance = 1e-9) {
   const b = [expected].flat();
   assert.equal(a.length, b.length);
   a.forEach((value, i) =>
-    assert.ok(Math.abs(value - b[i]) <= tolerance, `${JSON.stringify(a)} is not ${JSON.stringify(b)}`),
+    assert.ok(
+      Math.abs(value - b[i]) <= tolerance,
+      `${JSON.stringify(a)} is not ${JSON.stringify(b)}`,
+    ),
   );
 }
 
@@ -50,13 +64,17 @@ test('drags along an axis and in a plane', () => {
   // Points of the axis next to the closest one are farther from the ray.
   const distance = (p) => {
     const offset = subtract(p, ray.origin);
-    const t = offset[0] * ray.direction[0] + offset[1] * ray.direction[1] + offset[2] * ray.direction[2];
+    const t =
+      offset[0] * ray.direction[0] + offset[1] * ray.direction[1] + offset[2] * ray.direction[2];
     return length(subtract(offset, scale(ray.direction, t)));
   };
   assert.ok(reach > 0);
   assert.ok(distance(point) < distance([1, along + 0.01, 0]));
   assert.ok(distance(point) < distance([1, along - 0.01, 0]));
-  assert.equal(closestOnAxis({ origin: [0, 0, 5], direction: [0, 0, -1] }, [0, 0, 0], [0, 0, 1]), null);
+  assert.equal(
+    closestOnAxis({ origin: [0, 0, 5], direction: [0, 0, -1] }, [0, 0, 0], [0, 0, 1]),
+    null,
+  );
   near(meetPlane({ origin: [1, 2, 5], direction: [0, 0, -1] }, [0, 0, 1], [0, 0, 1]), [1, 2, 1]);
 });
 
@@ -77,12 +95,32 @@ test('turns by quaternions and back', () => {
 });
 
 test('places nodes below turned and stretched parents', () => {
-  const parent = parentFromNode({ translation: [1, 0, 0], rotation: fromEulerDegrees([0, 0, 90]), scale: [2, 3, 4] });
-  const child = parentFromNode({ translation: [1, 0, 0], rotation: [0, 0, 0, 1], scale: [1, 1, 1] });
+  const parent = parentFromNode({
+    translation: [1, 0, 0],
+    rotation: fromEulerDegrees([0, 0, 90]),
+    scale: [2, 3, 4],
+  });
+  const child = parentFromNode({
+    translation: [1, 0, 0],
+    rotation: [0, 0, 0, 1],
+    scale: [1, 1, 1],
+  });
   near(multiply(parent, child)[3], [1, 2, 0]);
   near(mapPoint(parent, [0, 1, 0]), [-2, 0, 0]);
   near(unmapDirection(parent, mapDirection(parent, [0.3, -2, 5])), [0.3, -2, 5]);
-  assert.equal(unmapDirection([[1, 0, 0], [0, 0, 0], [0, 0, 1], [0, 0, 0]], [1, 1, 1]), null, 'flat');
+  assert.equal(
+    unmapDirection(
+      [
+        [1, 0, 0],
+        [0, 0, 0],
+        [0, 0, 1],
+        [0, 0, 0],
+      ],
+      [1, 1, 1],
+    ),
+    null,
+    'flat',
+  );
 });
 
 test('converts colours both ways', () => {
@@ -136,11 +174,17 @@ test('framing shows all of a ball', () => {
 
 test('the picture keeps the shape of its stage within all limits', () => {
   const server = { isSoftware: false, maxWidth: 3840, maxHeight: 2160 };
-  assert.deepEqual(chooseViewSize({ width: 800, height: 600 }, 1, 'auto', server), { width: 800, height: 600 });
+  assert.deepEqual(chooseViewSize({ width: 800, height: 600 }, 1, 'auto', server), {
+    width: 800,
+    height: 600,
+  });
   const large = chooseViewSize({ width: 2000, height: 1000 }, 2, '1280 × 720', server);
   assert.ok(large.width * large.height <= 1280 * 720 * 1.01);
   assert.ok(Math.abs(large.width / large.height - 2) < 0.01);
-  const slow = chooseViewSize({ width: 1600, height: 900 }, 1, 'auto', { ...server, isSoftware: true });
+  const slow = chooseViewSize({ width: 1600, height: 900 }, 1, 'auto', {
+    ...server,
+    isSoftware: true,
+  });
   assert.deepEqual(slow, { width: 640, height: 360 });
   const narrow = chooseViewSize({ width: 10, height: 4000 }, 1, '1920 × 1080', server);
   assert.ok(narrow.height <= 2160 && narrow.width >= 2);

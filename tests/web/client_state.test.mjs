@@ -1,5 +1,5 @@
-// Proves the client's state without a browser: the document after edits as scene.changed brings them, and the times
-// from edit to photon.
+// Proves the client's state without a browser: the document after edits as scene.changed brings
+// them, and the times from edit to photon.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -38,7 +38,12 @@ test('applies updates to things, to the environment and to what moves along', ()
   scene.apply({ method: 'material.update', id: 0, set: { roughness: 0.25 } }, fresh);
   scene.apply({ method: 'environment.update', set: { intensity: 3 } }, fresh);
   scene.apply(
-    { method: 'node.update', id: 0, set: { translation: [2, 0, 0] }, lights: [{ id: 4, position: [1, 1, 0], direction: [0, 0, -1] }] },
+    {
+      method: 'node.update',
+      id: 0,
+      set: { translation: [2, 0, 0] },
+      lights: [{ id: 4, position: [1, 1, 0], direction: [0, 0, -1] }],
+    },
     fresh,
   );
   assert.equal(scene.find('material', 0).roughness, 0.25);
@@ -50,9 +55,19 @@ test('applies updates to things, to the environment and to what moves along', ()
 test('a loaded environment has its image, until an undo takes it back', () => {
   const { scene } = makeDocument();
   scene.apply({ method: 'environment.load', name: 'noon.exr', set: { type: 'equirect' } }, fresh);
-  assert.deepEqual(scene.find('environment'), { intensity: 1, type: 'equirect', image: 'noon.exr', has_picture: true });
+  assert.deepEqual(scene.find('environment'), {
+    intensity: 1,
+    type: 'equirect',
+    image: 'noon.exr',
+    has_picture: true,
+  });
   scene.apply({ method: 'environment.load', name: null, set: { type: 'none' } }, fresh);
-  assert.deepEqual(scene.find('environment'), { intensity: 1, type: 'none', image: null, has_picture: false });
+  assert.deepEqual(scene.find('environment'), {
+    intensity: 1,
+    type: 'none',
+    image: null,
+    has_picture: false,
+  });
 });
 
 test('a removed light takes its node along; undo brings both back', () => {

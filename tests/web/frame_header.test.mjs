@@ -1,6 +1,6 @@
-// Proves that the client reads a frame's header as PROTOCOL.md describes it: the table of fields is read from that
-// page, a header is written from the table with a different value in each field, and the parser must find each value
-// under its name.
+// Proves that the client reads a frame's header as PROTOCOL.md describes it: the table of fields is
+// read from that page, a header is written from the table with a different value in each field, and
+// the parser must find each value under its name.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

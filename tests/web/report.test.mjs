@@ -1,5 +1,5 @@
-// Proves the page of voxcast accuracy: Chromium opens it from a folder with made-up results, as a person does after a
-// run; the test looks at points, front, tip and table, and runs axe-core.
+// Proves the page of voxcast accuracy: Chromium opens it from a folder with made-up results, as a
+// person does after a run; the test looks at points, front, tip and table, and runs axe-core.
 import assert from 'node:assert/strict';
 import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -26,7 +26,13 @@ function rung(name, method, ms, flip, ssim, red) {
     pass_ms: { gbuffer: 0.2 * ms, voxelize: 0.7 * ms },
     memory_bytes: 3 << 20,
     cold: { ms: 5 * ms, metrics: metrics(2 * flip, ssim / 2, red) },
-    converged: { ms: 50 * ms, frames: 20, settled: true, metrics: metrics(flip, ssim, red), indirect: metrics(flip, ssim, red) },
+    converged: {
+      ms: 50 * ms,
+      frames: 20,
+      settled: true,
+      metrics: metrics(flip, ssim, red),
+      indirect: metrics(flip, ssim, red),
+    },
     edit: { arrived_ms: 7 * ms },
     pictures: { converged: `${name}.png`, strip: `${name}-strip.png` },
   };
@@ -53,7 +59,10 @@ const results = {
     rung('worse', 'grid', 20, 0.2, 0.95, 0.9),
     rung('best', 'clipmap', 100, 0.05, 0.99, 1),
   ],
-  noise: { metrics: { ldr_flip: { reference: 0.07, smallest: 0.05, enough: false } }, indirect: {} },
+  noise: {
+    metrics: { ldr_flip: { reference: 0.07, smallest: 0.05, enough: false } },
+    indirect: {},
+  },
 };
 
 describe('the report of an accuracy run', () => {
@@ -62,7 +71,8 @@ describe('the report of an accuracy run', () => {
 
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), 'voxcast-report-'));
-    for (const name of ['index.html', 'report.js', 'error_chart.js', 'chart_view.js']) copyFileSync(source(name), join(folder, name));
+    for (const name of ['index.html', 'report.js', 'error_chart.js', 'chart_view.js'])
+      copyFileSync(source(name), join(folder, name));
     writeFileSync(join(folder, 'results.js'), `globalThis.results = ${JSON.stringify(results)};\n`);
     browser = await openBrowser();
     page = browser.page;
@@ -81,7 +91,9 @@ describe('the report of an accuracy run', () => {
     assert.equal(await page.locator('.point').count(), 4);
     const places = await page
       .locator('.point')
-      .evaluateAll((marks) => marks.map((mark) => [Number(mark.getAttribute('cx')), Number(mark.getAttribute('cy'))]));
+      .evaluateAll((marks) =>
+        marks.map((mark) => [Number(mark.getAttribute('cx')), Number(mark.getAttribute('cy'))]),
+      );
     const [none, good, worse, best] = places;
     assert.ok(none[0] < good[0] && good[0] < worse[0] && worse[0] < best[0]);
     assert.ok(none[1] < worse[1] && worse[1] < good[1] && good[1] < best[1]);
@@ -103,7 +115,10 @@ describe('the report of an accuracy run', () => {
   test('shows setting and picture of a point', async () => {
     await page.locator('.point').nth(1).hover();
     const tip = page.locator('#tip');
-    assert.match(await tip.innerText(), /good\s+preset high, gi_method grid\. 10 ms; LDR-FLIP 0\.1; 3 MiB/);
+    assert.match(
+      await tip.innerText(),
+      /good\s+preset high, gi_method grid\. 10 ms; LDR-FLIP 0\.1; 3 MiB/,
+    );
     assert.match(await tip.locator('img').getAttribute('src'), /good\.png/);
     await page.locator('.point').nth(3).focus();
     assert.match(await tip.innerText(), /^best/);
@@ -123,7 +138,10 @@ describe('the report of an accuracy run', () => {
   });
 
   test('tells what the truth errs by itself', async () => {
-    assert.match(await page.locator('#noise').innerText(), /errs by 0\.07; .* 0\.05\. .*more samples/);
+    assert.match(
+      await page.locator('#noise').innerText(),
+      /errs by 0\.07; .* 0\.05\. .*more samples/,
+    );
     assert.equal(await page.locator('.noise').count(), 1);
     await page.locator('select[name=metric]').selectOption({ label: 'SSIM' });
     assert.match(await page.locator('#noise').innerText(), /not known/);

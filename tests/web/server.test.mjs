@@ -1,5 +1,5 @@
-// Proves that the running daemon keeps to PROTOCOL.md: starts voxcastd on a free port with a built-in scene, talks to
-// it as browsers and hostile programs do, and checks the replies.
+// Proves that the running daemon keeps to PROTOCOL.md: starts voxcastd on a free port with a
+// built-in scene, talks to it as browsers and hostile programs do, and checks the replies.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server.test.mjs
 import assert from 'node:assert/strict';
 import { mkdtempSync, writeFileSync } from 'node:fs';
@@ -31,7 +31,9 @@ async function hello(daemon, params = {}, options = {}) {
 
 describe('one daemon', () => {
   let daemon;
-  before(async () => (daemon = await startDaemon(['--scene', 'builtin:cornell', '--max-clients', '4'])));
+  before(
+    async () => (daemon = await startDaemon(['--scene', 'builtin:cornell', '--max-clients', '4'])),
+  );
   after(() => stopDaemon(daemon));
 
   test('answers operators', async () => {
@@ -47,11 +49,16 @@ describe('one daemon', () => {
     assert.equal(file.headers.get('cache-control'), 'no-cache');
     assert.match(file.headers.get('content-security-policy'), /img-src 'self' blob:/);
     for (const path of ['/../LICENSE', '/%2e%2e/LICENSE', '/..%2fLICENSE', '/.gitignore', '/none'])
-      assert.match(await raw(daemon.port, `GET ${path} HTTP/1.1\nHost: x\n\n`), /^HTTP\/1.. 40[34]/);
+      assert.match(
+        await raw(daemon.port, `GET ${path} HTTP/1.1\nHost: x\n\n`),
+        /^HTTP\/1.. 40[34]/,
+      );
   });
 
   test('refuses a foreign origin, another subprotocol and other upgrades', async () => {
-    await assert.rejects(Client.open(daemon.url, { origin: 'http://evil.example' }), { status: 403 });
+    await assert.rejects(Client.open(daemon.url, { origin: 'http://evil.example' }), {
+      status: 403,
+    });
     await assert.rejects(Client.open(daemon.url, { protocol: 'other' }), { status: 400 });
     const own = await Client.open(daemon.url, { origin: daemon.http });
     await own.close();
@@ -95,13 +102,18 @@ describe('one daemon', () => {
     assert.deepEqual(error.data, { field: 'exposure_ev', value: '99', min: -16, max: 16 });
     const wrong = (await client.call('settings.update', { set: { tonemap: 'filmic' } })).error;
     assert.deepEqual(wrong.data.allowed, ['hable', 'aces', 'khronos_neutral', 'none']);
-    assert.equal((await client.call('light.update', { id: 999, set: { intensity: 1 } })).error.data.field, 'id');
+    assert.equal(
+      (await client.call('light.update', { id: 999, set: { intensity: 1 } })).error.data.field,
+      'id',
+    );
     await client.close();
   });
 
   test('closes on oversize and binary messages', async () => {
     const large = await hello(daemon);
-    large.socket.send(JSON.stringify({ jsonrpc: '2.0', method: 'x', params: { a: 'b'.repeat(70000) } }));
+    large.socket.send(
+      JSON.stringify({ jsonrpc: '2.0', method: 'x', params: { a: 'b'.repeat(70000) } }),
+    );
     assert.equal((await large.closed).code, 1009);
     const binary = await hello(daemon);
     binary.socket.send(Buffer.from([1, 2, 3]));
@@ -142,12 +154,18 @@ describe('one daemon', () => {
     await client.call('view.configure', { width: 64, height: 36, quality: 'draft' });
     const pose = { eye: [0, 1, 3.2], target: [0, 1, 0] };
     await client.call('camera.set', { ...pose, revision: 1 });
-    await client.until(() => client.frames.find((f) => f.width === 64 && f.cameraRevision === 1), 'the camera in a frame');
+    await client.until(
+      () => client.frames.find((f) => f.width === 64 && f.cameraRevision === 1),
+      'the camera in a frame',
+    );
     await client.untilStill(1000);
     const count = client.frames.length;
     await client.call('camera.set', { ...pose, revision: 2 });
     const told = await client.until(
-      () => client.notifications.find(({ method, params }) => method === 'stats' && params.camera_revision === 2),
+      () =>
+        client.notifications.find(
+          ({ method, params }) => method === 'stats' && params.camera_revision === 2,
+        ),
       'the camera in the statistics',
     );
     assert.equal(told.params.frame_id, client.frames.at(-1).frameId);
@@ -174,7 +192,10 @@ describe('one daemon', () => {
   test('tells edits to all, with author and newest edit id in the frame', async () => {
     const ada = await hello(daemon, { name: 'Ada' });
     const bob = await hello(daemon, { name: 'Bob' });
-    const { result } = await ada.call('settings.update', { set: { exposure_ev: 1.5 }, edit_id: 12 });
+    const { result } = await ada.call('settings.update', {
+      set: { exposure_ev: 1.5 },
+      edit_id: 12,
+    });
     assert.equal(result.edit_id, 12);
     for (const client of [ada, bob]) {
       const change = await client.until(
@@ -193,10 +214,21 @@ describe('one daemon', () => {
     const client = await hello(daemon);
     const replies = [];
     for (let i = 1; i <= 60; i++)
-      replies.push(client.call('settings.update', { set: { exposure_ev: i / 60 }, edit_id: i, transient: true }));
+      replies.push(
+        client.call('settings.update', {
+          set: { exposure_ev: i / 60 },
+          edit_id: i,
+          transient: true,
+        }),
+      );
     const answers = await Promise.all(replies);
-    const covered = answers.flatMap((a) => (a.result.superseded ? [a.result.edit_id, ...a.result.superseded] : []));
-    assert.deepEqual(covered.sort((a, b) => a - b), Array.from({ length: 60 }, (_, i) => i + 1));
+    const covered = answers.flatMap((a) =>
+      a.result.superseded ? [a.result.edit_id, ...a.result.superseded] : [],
+    );
+    assert.deepEqual(
+      covered.sort((a, b) => a - b),
+      Array.from({ length: 60 }, (_, i) => i + 1),
+    );
     assert.equal((await client.call('scene.get')).result.settings.exposure_ev, 1);
     await client.close();
   });
@@ -205,7 +237,9 @@ describe('one daemon', () => {
     const client = await hello(daemon);
     const before = (await client.call('scene.get')).result;
     assert.ok(before.materials.length > 0 && before.nodes.length > 0 && before.bounds);
-    const { id } = (await client.call('light.add', { set: { type: 'spot', intensity: 7, position: [0, 1, 0] } })).result;
+    const { id } = (
+      await client.call('light.add', { set: { type: 'spot', intensity: 7, position: [0, 1, 0] } })
+    ).result;
     let scene = (await client.call('scene.get')).result;
     const added = scene.lights.find((l) => l.id === id);
     assert.equal(added.intensity, 7);
@@ -215,7 +249,10 @@ describe('one daemon', () => {
     scene = (await client.call('scene.get')).result;
     assert.equal(scene.lights.find((l) => l.id === id).type, 'spot');
     assert.equal((await client.call('edit.undo')).result.method, 'light.remove');
-    await client.call('material.update', { id: 0, set: { roughness: 0.25, base_color: [1, 0, 0, 1] } });
+    await client.call('material.update', {
+      id: 0,
+      set: { roughness: 0.25, base_color: [1, 0, 0, 1] },
+    });
     assert.equal((await client.call('edit.undo')).result.method, 'material.update');
     scene = (await client.call('scene.get')).result;
     assert.deepEqual(scene.materials[0], before.materials[0]);
@@ -337,7 +374,10 @@ test('keeps the last good texture while its file is broken', async () => {
   assert.match(notice.params.message, /colour\.tga/);
   assert.equal(await textures(), 1);
   writeFileSync(join(folder, 'colour.tga'), picture(200));
-  await client.until(() => client.notifications.find((n) => n.method === 'scene.loaded'), 'scene.loaded');
+  await client.until(
+    () => client.notifications.find((n) => n.method === 'scene.loaded'),
+    'scene.loaded',
+  );
   assert.equal(await textures(), 1);
   assert.equal(await stopDaemon(daemon), 0, daemon.log);
 });
@@ -351,7 +391,10 @@ test('reloads a changed scene file and keeps the last good one', async () => {
   const client = await hello(daemon);
   assert.equal((await client.call('scene.get')).result.counts.triangles, 1);
   writeFileSync(path, triangle + 'v 1 1 0\nf 2 4 3\n');
-  await client.until(() => client.notifications.find((n) => n.method === 'scene.loaded'), 'scene.loaded');
+  await client.until(
+    () => client.notifications.find((n) => n.method === 'scene.loaded'),
+    'scene.loaded',
+  );
   assert.equal((await client.call('scene.get')).result.counts.triangles, 2);
   writeFileSync(path, 'f 1 2 900\n');
   const notice = await client.until(

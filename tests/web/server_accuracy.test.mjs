@@ -1,7 +1,7 @@
-// Proves that clients measure accuracy as PROTOCOL.md says. A measurement goes from the reference to the last
-// configuration, reports its progress, leaves files that hold finite figures and nothing else, ends when it is told to,
-// and goes with its client. Another client's images stay the same bits and keep coming. A configuration changes only
-// its own client's images.
+// Proves that clients measure accuracy as PROTOCOL.md says. A measurement goes from the reference
+// to the last configuration, reports its progress, leaves files that hold finite figures and
+// nothing else, ends when it is told to, and goes with its client. Another client's images stay the
+// same bits and keep coming. A configuration changes only its own client's images.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_accuracy.test.mjs
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
@@ -26,7 +26,10 @@ async function arrive(daemon, view = {}) {
 
 /** Waits for a converged frame that comes after the first `from`. */
 const settled = (client, from = 0) =>
-  client.until(() => client.frames.slice(from).find(({ converged }) => converged), 'a picture at rest');
+  client.until(
+    () => client.frames.slice(from).find(({ converged }) => converged),
+    'a picture at rest',
+  );
 
 const progress = (client, id) =>
   client.notifications
@@ -50,7 +53,9 @@ const get = (daemon, id, file) => fetch(`${daemon.http}/accuracy/${id}/${file}`)
 /** The status line that answers a request whose path is sent unchanged. */
 function rawStatus(port, path) {
   return new Promise((resolve, reject) => {
-    const socket = net.connect(port, '127.0.0.1', () => socket.write(`GET ${path} HTTP/1.1\r\nHost: x\r\n\r\n`));
+    const socket = net.connect(port, '127.0.0.1', () =>
+      socket.write(`GET ${path} HTTP/1.1\r\nHost: x\r\n\r\n`),
+    );
     let text = '';
     socket.setTimeout(5000, () => reject(new Error(`no answer to ${path}`)));
     socket.on('data', (data) => (text += data));
@@ -63,9 +68,17 @@ function rawStatus(port, path) {
 async function look(client, x, revision) {
   const from = client.frames.length;
   const { fov_y_rad: fov } = client.hello.camera;
-  await client.call('camera.set', { eye: [x, 0.27, 1.08], target: [0, 0.27, 0], fov_y_rad: fov, revision });
+  await client.call('camera.set', {
+    eye: [x, 0.27, 1.08],
+    target: [0, 0.27, 0],
+    fov_y_rad: fov,
+    revision,
+  });
   return client.until(
-    () => client.frames.slice(from).find((frame) => frame.converged && frame.cameraRevision === revision),
+    () =>
+      client.frames
+        .slice(from)
+        .find((frame) => frame.converged && frame.cameraRevision === revision),
     'the picture of a camera',
     60000,
   );
@@ -101,7 +114,11 @@ describe('accuracy', () => {
     await refused('accuracy.start', { noise: 'low' }, 'noise', /number/);
     await refused('accuracy.start', { rungs: 3 }, 'rungs', /no parameter/);
     await refused('view.configure', { rung: 'draft' }, 'rung', /nothing has been measured/);
-    assert.deepEqual((await client.call('accuracy.cancel', {})).result, {}, 'nothing to end is no error');
+    assert.deepEqual(
+      (await client.call('accuracy.cancel', {})).result,
+      {},
+      'nothing to end is no error',
+    );
     await client.call('settings.update', { set: { gi_method: 'reference' } });
     await refused('accuracy.start', {}, 'gi_method', /choose none, clipmap or grid/);
     await client.call('settings.update', { set: { gi_method: 'clipmap' } });
@@ -144,11 +161,21 @@ describe('accuracy', () => {
       for (const file of Object.values(pictures)) {
         const answer = await get(daemon, id, file);
         assert.equal(answer.headers.get('content-type'), 'image/png');
-        assert.equal(Buffer.from(await answer.arrayBuffer()).subarray(1, 4).toString(), 'PNG', file);
+        assert.equal(
+          Buffer.from(await answer.arrayBuffer())
+            .subarray(1, 4)
+            .toString(),
+          'PNG',
+          file,
+        );
       }
     }
-    const flip = (name) => results.rungs.find((rung) => rung.name === name).converged.metrics.ldr_flip;
-    assert.ok(flip('live') < 0.5 * flip('none'), `${flip('live')} against ${flip('none')} without indirect light`);
+    const flip = (name) =>
+      results.rungs.find((rung) => rung.name === name).converged.metrics.ldr_flip;
+    assert.ok(
+      flip('live') < 0.5 * flip('none'),
+      `${flip('live')} against ${flip('none')} without indirect light`,
+    );
     assert.equal((await get(daemon, id, 'reference.png')).status, 200);
     const { scene, exposure } = results.setup;
     assert.deepEqual([scene.width, scene.height, scene.source], [64, 36, 'builtin:cornell']);
@@ -193,7 +220,12 @@ describe('accuracy', () => {
     const traced = await start(client, { noise: 0.0005 });
     await heard(client, traced.measurement, ({ noise }) => noise > 0, 'noise of the reference');
     await client.call('accuracy.cancel', {});
-    await heard(client, traced.measurement, inState('cancelled'), 'the end while the reference is traced');
+    await heard(
+      client,
+      traced.measurement,
+      inState('cancelled'),
+      'the end while the reference is traced',
+    );
     assert.equal((await get(daemon, traced.measurement, 'results.json')).status, 404);
     // A new measurement replaces the old one.
     const measured = await start(client, { noise: 0.1, ladder: 'full' });
@@ -201,7 +233,12 @@ describe('accuracy', () => {
     await client.until(() => folders().length === 1, 'the folder of the old one is gone');
     await heard(client, measured.measurement, ({ done }) => done === 1, 'a rung');
     await client.call('accuracy.cancel', {});
-    const end = await heard(client, measured.measurement, inState(...OVER), 'the end while rungs are measured');
+    const end = await heard(
+      client,
+      measured.measurement,
+      inState(...OVER),
+      'the end while rungs are measured',
+    );
     assert.equal(end.state, 'cancelled');
     const results = await (await get(daemon, measured.measurement, 'results.json')).json();
     assert.equal(results.rungs.length, end.done, 'what has been measured stays');
@@ -211,7 +248,9 @@ describe('accuracy', () => {
     const noisy = await heard(client, hasty.measurement, inState('rungs'), 'rungs after a second');
     assert.ok(noisy.noise > 0.0005, `noise ${noisy.noise}`);
     // Many requests at once leave one measurement.
-    const replies = await Promise.all(Array.from({ length: 40 }, () => client.call('accuracy.start', {})));
+    const replies = await Promise.all(
+      Array.from({ length: 40 }, () => client.call('accuracy.start', {})),
+    );
     assert.equal(new Set(replies.map(({ result }) => result.measurement)).size, 40);
     await client.until(() => folders().length === 1, 'the folders of all but the last are gone');
     // A waiting measurement ends at once; one whose client leaves leaves nothing behind.
@@ -239,8 +278,13 @@ describe('accuracy', () => {
     const other = await arrive(daemon);
     // All views share one grid, which other settings would reset.
     await client.call('settings.update', { set: { gi_method: 'grid' } });
-    const times = { alone: [], 'while the reference is traced': [], 'while rungs are measured': [] };
-    let pictures = [], revision = 0;
+    const times = {
+      alone: [],
+      'while the reference is traced': [],
+      'while rungs are measured': [],
+    };
+    let pictures = [],
+      revision = 0;
     /** Images at rest from three positions; records how long each first frame took. */
     const tour = async (when) => {
       const seen = [];
@@ -248,16 +292,21 @@ describe('accuracy', () => {
         const asked = performance.now(), from = other.frames.length;
         const rest = look(other, x, ++revision);
         const moved = ({ cameraRevision }) => cameraRevision === revision;
-        await other.until(() => other.frames.slice(from).find(moved), 'the first frame of a camera');
+        await other.until(
+          () => other.frames.slice(from).find(moved),
+          'the first frame of a camera',
+        );
         times[when]?.push(performance.now() - asked);
         seen.push((await rest).jpeg);
       }
       return seen;
     };
     const same = (seen) => seen.every((picture, i) => pictures[i]?.equals(picture));
-    const check = async (when) => assert.ok(same(await tour(when)), `${when}: the same bits as before`);
+    const check = async (when) =>
+      assert.ok(same(await tour(when)), `${when}: the same bits as before`);
     // The cache converges where somebody first looks, so that the first images are not the last.
-    for (let i = 0, seen = await tour(); !same(seen) && i < 10; i++, seen = await tour()) pictures = seen;
+    for (let i = 0, seen = await tour(); !same(seen) && i < 10; i++, seen = await tour())
+      pictures = seen;
     for (let i = 0; i < 3; i++) await check('alone');
     const { measurement: id } = await start(client, { noise: 0.005, ladder: 'full' });
     await heard(client, id, ({ samples }) => samples > 0, 'samples');
@@ -266,12 +315,23 @@ describe('accuracy', () => {
     const second = await start(client, { noise: 0.1, ladder: 'full' });
     await heard(client, second.measurement, inState('rungs'), 'rungs');
     for (let i = 0; i < 6; i++) await check('while rungs are measured');
-    assert.ok(!progress(client, second.measurement).some(inState(...OVER)), 'rungs are still being measured');
+    assert.ok(
+      !progress(client, second.measurement).some(inState(...OVER)),
+      'rungs are still being measured',
+    );
     await client.call('accuracy.cancel', {});
     await heard(client, second.measurement, inState('cancelled'), 'the end');
     await check('after');
     // Configurations of other rows, methods, voxels, bounces, sizes.
-    for (const rung of ['none', 'draft', 'final', 'grid-bounces-1', 'grid-cone_set-5', 'clipmap-64-pixel', '']) {
+    for (const rung of [
+      'none',
+      'draft',
+      'final',
+      'grid-bounces-1',
+      'grid-cone_set-5',
+      'clipmap-64-pixel',
+      '',
+    ]) {
       const from = client.frames.length;
       await client.call('view.configure', { rung });
       await check(`beside rung ${rung}`);
@@ -280,7 +340,10 @@ describe('accuracy', () => {
     }
     for (const [when, list] of Object.entries(times)) {
       list.sort((a, b) => a - b);
-      console.log(`${when}: first frame after ${list[list.length >> 1].toFixed(0)} ms, ${list.at(-1).toFixed(0)} at most`);
+      console.log(
+        `${when}: first frame after ${list[list.length >> 1].toFixed(0)} ms, ` +
+          `${list.at(-1).toFixed(0)} at most`,
+      );
     }
     await client.call('settings.update', { set: { gi_method: 'clipmap' } });
     await client.close();
@@ -308,7 +371,11 @@ describe('accuracy', () => {
     const bad = await client.call('view.configure', { rung: 'best', width: 32 });
     assert.equal(bad.error?.data.field, 'rung');
     assert.match(bad.error.message, /no rung "best"; measured are live, none, draft/);
-    assert.equal((await client.call('view.configure', {})).result.width, 64, 'nothing of it was set');
+    assert.equal(
+      (await client.call('view.configure', {})).result.width,
+      64,
+      'nothing of it was set',
+    );
     // Edits of shared settings take effect if they are about how images are displayed.
     await rung('draft');
     let from = client.frames.length;
@@ -316,7 +383,11 @@ describe('accuracy', () => {
     await settled(client, from);
     await client.call('settings.update', { set: { exposure_ev: 0 } });
     await start(client, { noise: 0.1 });
-    assert.equal((await client.call('view.configure', {})).result.rung, '', 'a new measurement clears it');
+    assert.equal(
+      (await client.call('view.configure', {})).result.rung,
+      '',
+      'a new measurement clears it',
+    );
     from = client.frames.length;
     await client.call('accuracy.cancel', {});
     await rung('none');
@@ -324,7 +395,11 @@ describe('accuracy', () => {
     await rung('none');
     const loaded = await client.call('scene.load', { source: 'builtin:furnace' });
     assert.ok(loaded.result, JSON.stringify(loaded.error));
-    assert.equal((await client.call('view.configure', {})).result.rung, '', 'a new scene clears it');
+    assert.equal(
+      (await client.call('view.configure', {})).result.rung,
+      '',
+      'a new scene clears it',
+    );
     assert.ok(other.frames.length >= others);
     await client.close();
     await other.close();

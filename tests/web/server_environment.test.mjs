@@ -1,5 +1,6 @@
-// Proves that environments can be chosen: by --environment at the start, and by environment.load, which is an edit like
-// others. Starts voxcastd with a folder of small images that are written here and compares the bytes of frames.
+// Proves that environments can be chosen: by --environment at the start, and by environment.load,
+// which is an edit like others. Starts voxcastd with a folder of small images that are written here
+// and compares the bytes of frames.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_environment.test.mjs
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -13,7 +14,10 @@ import { Client, startDaemon, stopDaemon } from './client.mjs';
 /** A Radiance image of 4 x 2 texels of one colour, as mantissas and exponent. */
 function hdr(...rgbe) {
   const header = '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n';
-  return Buffer.concat([Buffer.from(header), ...Array.from({ length: 8 }, () => Buffer.from(rgbe))]);
+  return Buffer.concat([
+    Buffer.from(header),
+    ...Array.from({ length: 8 }, () => Buffer.from(rgbe)),
+  ]);
 }
 
 /** An OpenEXR image of 4 x 2 texels of one luminance, uncompressed. */
@@ -25,7 +29,11 @@ function exr(luminance) {
   const window = int(0, 0, 3, 1);
   const header = Buffer.concat([
     int(20000630, 2),
-    attribute('channels', 'chlist', Buffer.concat([Buffer.from('Y\0'), int(2, 0, 1, 1), Buffer.from([0])])),
+    attribute(
+      'channels',
+      'chlist',
+      Buffer.concat([Buffer.from('Y\0'), int(2, 0, 1, 1), Buffer.from([0])]),
+    ),
     attribute('compression', 'compression', Buffer.from([0])),
     attribute('dataWindow', 'box2i', window),
     attribute('displayWindow', 'box2i', window),
@@ -51,7 +59,10 @@ const environmentOf = async (client) => (await client.call('scene.get')).result.
 /** The newest frame once images have converged, of this revision of the document or later. */
 async function restingFrame(client) {
   const { revision } = (await client.call('scene.get')).result;
-  await client.until(() => client.frames.some((f) => f.sceneRevision >= revision && f.converged), 'a resting frame');
+  await client.until(
+    () => client.frames.some((f) => f.sceneRevision >= revision && f.converged),
+    'a resting frame',
+  );
   await client.untilStill(500);
   return client.frames.at(-1).jpeg;
 }
@@ -76,10 +87,17 @@ describe('a daemon with a folder of environments', () => {
     other = await greet(daemon, { name: 'Bob' }, '?token=editor');
     viewer = await greet(daemon, {}, '?token=viewer');
     for (const silent of [other, viewer]) await silent.call('view.configure', { paused: true });
-    await client.call('view.configure', { width: 96, height: 64, quality: 'interactive', adaptive: false });
-    // Light in voxels converges to within a bound, not to the bit: a trace of the former light stays. So
-    // indirect light is off here.
-    const { result } = await client.call('settings.update', { set: { gi_method: 'none', exposure_mode: 'fixed' } });
+    await client.call('view.configure', {
+      width: 96,
+      height: 64,
+      quality: 'interactive',
+      adaptive: false,
+    });
+    // Light in voxels converges to within a bound, not to the bit: a trace of the former light
+    // stays. So indirect light is off here.
+    const { result } = await client.call('settings.update', {
+      set: { gi_method: 'none', exposure_mode: 'fixed' },
+    });
     assert.ok(result);
   });
   after(async () => {
@@ -90,7 +108,11 @@ describe('a daemon with a folder of environments', () => {
 
   test('lists images and nothing that leads out', async () => {
     const { environments, scenes } = (await client.call('scene.list')).result;
-    assert.deepEqual(environments, [{ name: 'broken.exr' }, { name: 'red.hdr' }, { name: 'skies/grey.exr' }]);
+    assert.deepEqual(environments, [
+      { name: 'broken.exr' },
+      { name: 'red.hdr' },
+      { name: 'skies/grey.exr' },
+    ]);
     assert.ok(!scenes.some((scene) => /hdr|exr/.test(scene.source)));
   });
 
@@ -110,11 +132,19 @@ describe('a daemon with a folder of environments', () => {
     assert.notDeepEqual(red, without);
     assert.equal(client.frames.at(-1).editId, 7);
     const changed = await other.until(
-      () => other.notifications.slice(seen).find((n) => n.method === 'scene.changed'), 'scene.changed');
+      () => other.notifications.slice(seen).find((n) => n.method === 'scene.changed'),
+      'scene.changed',
+    );
     assert.equal(changed.params.author.name, 'Ada');
     const [edit] = changed.params.edits;
-    assert.deepEqual([edit.method, edit.name, edit.set], ['environment.load', 'red.hdr', { type: 'equirect' }]);
-    assert.deepEqual([(await environmentOf(other)).type, (await environmentOf(other)).image], ['equirect', 'red.hdr']);
+    assert.deepEqual(
+      [edit.method, edit.name, edit.set],
+      ['environment.load', 'red.hdr', { type: 'equirect' }],
+    );
+    assert.deepEqual(
+      [(await environmentOf(other)).type, (await environmentOf(other)).image],
+      ['equirect', 'red.hdr'],
+    );
 
     await client.call('environment.load', { name: 'skies/grey.exr' });
     const grey = await restingFrame(client);
@@ -139,15 +169,29 @@ describe('a daemon with a folder of environments', () => {
   test('a client that comes back hears of it', async () => {
     const { epoch, revision } = (await client.call('scene.get')).result;
     await client.call('environment.load', { name: 'red.hdr' });
-    const late = await greet(daemon, { resume_epoch: epoch, resume_revision: revision }, '?token=editor');
+    const late = await greet(
+      daemon,
+      { resume_epoch: epoch, resume_revision: revision },
+      '?token=editor',
+    );
     assert.equal(late.hello.resync, false);
-    assert.deepEqual(late.hello.edits.map((edit) => [edit.method, edit.name]), [['environment.load', 'red.hdr']]);
+    assert.deepEqual(
+      late.hello.edits.map((edit) => [edit.method, edit.name]),
+      [['environment.load', 'red.hdr']],
+    );
     await late.close();
   });
 
   test('refuses what is not there, leads out, is broken, or is not allowed', async () => {
     const before = await environmentOf(client);
-    for (const name of ['none.hdr', '../red.hdr', '/etc/passwd', 'leads_out.hdr', 'one.obj', `${folder}/red.hdr`]) {
+    for (const name of [
+      'none.hdr',
+      '../red.hdr',
+      '/etc/passwd',
+      'leads_out.hdr',
+      'one.obj',
+      `${folder}/red.hdr`,
+    ]) {
       const { error } = await client.call('environment.load', { name });
       assert.equal(error.code, -32602, name);
       assert.equal(error.data.field, 'name');
@@ -165,7 +209,8 @@ describe('a daemon with a folder of environments', () => {
     await client.call('environment.load', { name: 'red.hdr' });
     const red = await restingFrame(client);
     const seen = client.notifications.length;
-    const news = (method) => () => client.notifications.slice(seen).find((n) => n.method === method);
+    const news = (method) => () =>
+      client.notifications.slice(seen).find((n) => n.method === method);
     writeFileSync(join(folder, 'red.hdr'), hdr(20, 200, 20, 129));
     const changed = await client.until(news('scene.changed'), 'the reload');
     assert.equal(changed.params.author, null);
@@ -180,7 +225,10 @@ describe('a daemon with a folder of environments', () => {
 
   test('another scene has its own environment', async () => {
     await client.call('scene.load', { source: 'one.obj' });
-    assert.deepEqual([(await environmentOf(client)).type, (await environmentOf(client)).image], ['gradient', null]);
+    assert.deepEqual(
+      [(await environmentOf(client)).type, (await environmentOf(client)).image],
+      ['gradient', null],
+    );
     assert.equal((await client.call('edit.undo')).result.method, null);
   });
 });
@@ -197,7 +245,10 @@ test('--environment lights the first scene, a broken one ends the daemon', async
   assert.equal((await environmentOf(client)).image, null);
   await client.close();
   assert.equal(await stopDaemon(daemon), 0, daemon.log);
-  await assert.rejects(startDaemon(['builtin:cornell', '--environment', join(folder, 'broken.exr')]), /fetch|ended/);
+  await assert.rejects(
+    startDaemon(['builtin:cornell', '--environment', join(folder, 'broken.exr')]),
+    /fetch|ended/,
+  );
   const render = (name) =>
     spawnSync(process.env.VOXCAST ?? daemon.child.spawnargs[3].replace(/d$/, ''), [
       ...['render', 'builtin:cornell', '--environment', join(folder, name), '--gi', 'none'],

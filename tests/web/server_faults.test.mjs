@@ -1,6 +1,6 @@
-// Proves that the daemon outlives the faults of its clients and of its machine: truncated frames and messages or no
-// frames at all, clients that stop reading, a full disk, a lost GL context. Others are served meanwhile, and the
-// document does not change.
+// Proves that the daemon outlives the faults of its clients and of its machine: truncated frames
+// and messages or no frames at all, clients that stop reading, a full disk, a lost GL context.
+// Others are served meanwhile, and the document does not change.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_faults.test.mjs
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
@@ -11,8 +11,8 @@ import { after, afterEach, before, describe, test } from 'node:test';
 
 import { Client, PATIENCE_MS, sleep, startDaemon, stopDaemon } from './client.mjs';
 
-// How much the daemon may keep for a client that does not read: as little as possible, so that the queue is full before
-// a minute of silence ends the client.
+// How much the daemon may keep for a client that does not read: as little as possible, so that the
+// queue is full before a minute of silence ends the client.
 const MAX_QUEUED_BYTES = 1 << 20;
 // More than Linux lets two TCP sockets hold.
 const SOCKET_BYTES = 16 << 20;
@@ -40,16 +40,24 @@ function frame(text, { opcode = TEXT, final = true, masked = true, announced } =
   }
   if (masked) header[1] |= MASKED;
   const mask = masked ? [1, 2, 3, 4] : [];
-  return Buffer.concat([Buffer.from([...header, ...mask]), data.map((byte, i) => (masked ? byte ^ mask[i % 4] : byte))]);
+  return Buffer.concat([
+    Buffer.from([...header, ...mask]),
+    data.map((byte, i) => (masked ? byte ^ mask[i % 4] : byte)),
+  ]);
 }
 
-const message = (method, params = {}, id = 1) => JSON.stringify({ jsonrpc: '2.0', id, method, params });
+const message = (method, params = {}, id = 1) =>
+  JSON.stringify({ jsonrpc: '2.0', id, method, params });
 
 /** A socket that has become a WebSocket, and all that it reads. */
 function upgrade(port) {
   return new Promise((resolve, reject) => {
     const socket = net.connect(port, '127.0.0.1');
-    const raw = { socket, read: Buffer.alloc(0), closed: new Promise((done) => socket.on('close', done)) };
+    const raw = {
+      socket,
+      read: Buffer.alloc(0),
+      closed: new Promise((done) => socket.on('close', done)),
+    };
     socket.on('error', () => {}); // resets are what some cases want
     socket.setTimeout(PATIENCE_MS, () => reject(new Error('no answer')));
     socket.on('data', (data) => {
@@ -57,8 +65,9 @@ function upgrade(port) {
       if (raw.read.includes('\r\n\r\n')) resolve(raw);
     });
     socket.write(
-      'GET / HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n' +
-        'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: voxcast.v1\r\n\r\n',
+      'GET / HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n' +
+        'Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n' +
+        'Sec-WebSocket-Protocol: voxcast.v1\r\n\r\n',
     );
   });
 }
@@ -89,8 +98,15 @@ describe('clients at fault', () => {
   /** The good client gets an image of a camera of its own, and the document has not changed. */
   async function checkOthers(what) {
     const number = ++revision;
-    await good.call('camera.set', { eye: [number / 1000, 0.27, 1.08], target: [0, 0.27, 0], revision: number });
-    await good.until(() => good.frames.find((f) => f.cameraRevision === number), `a frame beside ${what}`);
+    await good.call('camera.set', {
+      eye: [number / 1000, 0.27, 1.08],
+      target: [0, 0.27, 0],
+      revision: number,
+    });
+    await good.until(
+      () => good.frames.find((f) => f.cameraRevision === number),
+      `a frame beside ${what}`,
+    );
     assert.deepEqual((await good.call('scene.get')).result, document, what);
   }
 
@@ -101,8 +117,29 @@ describe('clients at fault', () => {
     ['half a message', frame('{"jsonrpc":', { announced: 100 })],
     ['half a message after hello', hello, frame('{"jsonrpc":', { announced: 100 })],
     ['a first fragment alone', hello, frame('{"json', { final: false })],
-    ['a length of 2^63 - 1', Buffer.from([FINAL | TEXT, MASKED | 127, 0x7f, 255, 255, 255, 255, 255, 255, 255, 1, 2, 3, 4])],
-    ['a length of 2^64 - 1', Buffer.from([FINAL | TEXT, MASKED | 127, 255, 255, 255, 255, 255, 255, 255, 255, 1, 2, 3, 4])],
+    [
+      'a length of 2^63 - 1',
+      Buffer.from([
+        FINAL | TEXT,
+        MASKED | 127,
+        0x7f,
+        255,
+        255,
+        255,
+        255,
+        255,
+        255,
+        255,
+        1,
+        2,
+        3,
+        4,
+      ]),
+    ],
+    [
+      'a length of 2^64 - 1',
+      Buffer.from([FINAL | TEXT, MASKED | 127, 255, 255, 255, 255, 255, 255, 255, 255, 1, 2, 3, 4]),
+    ],
     ['noise', Buffer.from(Array.from({ length: 4096 }, (_, i) => (i * 167 + 13) & 255))],
   ])
     test(`hangs up in the midst of ${what}`, async () => {
@@ -141,20 +178,24 @@ describe('clients at fault', () => {
     const text = message('settings.update', { set: { gamma: 99 } }, 'in fragments');
     for (let i = 0; i < text.length; i += 7)
       raw.socket.write(
-        frame(text.slice(i, i + 7), { opcode: i ? CONTINUATION : TEXT, final: i + 7 >= text.length }));
+        frame(text.slice(i, i + 7), {
+          opcode: i ? CONTINUATION : TEXT,
+          final: i + 7 >= text.length,
+        }),
+      );
     await readUntil(raw, 'in fragments');
     raw.socket.destroy();
     await checkOthers('fragments');
   });
 
-  test('stops reading: others go on, and it is hung up on before its answers fill the memory', async () => {
+  test('stops reading: others go on, it is hung up on before answers fill the memory', async () => {
     const raw = await upgrade(daemon.port);
     raw.socket.write(hello);
     await readUntil(raw, '"parameters"');
     raw.socket.pause();
     const bytes = JSON.stringify(document).length;
-    // Enough replies to fill the daemon's queue and the sockets. The test does not read, so it learns from the daemon's
-    // log that the connection was closed.
+    // Enough replies to fill the daemon's queue and the sockets. The test does not read, so it
+    // learns from the daemon's log that the connection was closed.
     const most = (MAX_QUEUED_BYTES + SOCKET_BYTES) / bytes;
     const before = daemon.log.length;
     const told = (what) => daemon.log.slice(before).includes(what);
@@ -175,7 +216,8 @@ describe('clients at fault', () => {
       const raws = await Promise.all(Array.from({ length: 10 }, () => upgrade(daemon.port)));
       for (const [i, raw] of raws.entries()) {
         raw.socket.write(hello);
-        if (i % 2) raw.socket.write(frame(message('view.configure', { width: 4096, height: 2160 })));
+        if (i % 2)
+          raw.socket.write(frame(message('view.configure', { width: 4096, height: 2160 })));
         raw.socket.destroy();
       }
     }
@@ -198,7 +240,10 @@ describe('a full disk', () => {
     // Everything else goes on.
     const from = client.frames.length;
     await client.call('camera.set', { eye: [0.1, 0.27, 1.08], target: [0, 0.27, 0], revision: 3 });
-    await client.until(() => client.frames.slice(from).find((f) => f.cameraRevision === 3), 'a frame');
+    await client.until(
+      () => client.frames.slice(from).find((f) => f.cameraRevision === 3),
+      'a frame',
+    );
     await client.close();
   }
 
@@ -216,27 +261,46 @@ describe('a full disk', () => {
   });
 
   test('that takes no folder refuses measurements alone', async () => {
-    const daemon = await startDaemon(['--scene', 'builtin:cornell'], { env: { TMPDIR: '/proc/no-such-folder' } });
+    const daemon = await startDaemon(['--scene', 'builtin:cornell'], {
+      env: { TMPDIR: '/proc/no-such-folder' },
+    });
     await measure(daemon, /folder|directory/);
     assert.equal(await stopDaemon(daemon), 0);
   });
 });
 
 test('a lost context costs pictures, but neither clients nor edits', async () => {
-  const daemon = await startDaemon(['--scene', 'builtin:cornell'], { env: { VOXCAST_LOSE_CONTEXT: '12' } });
+  const daemon = await startDaemon(['--scene', 'builtin:cornell'], {
+    env: { VOXCAST_LOSE_CONTEXT: '12' },
+  });
   const clients = [await arrive(daemon), await arrive(daemon)];
   await clients[0].call('settings.update', { set: { exposure_ev: 1.5 } });
-  const reset = () => clients.every((client) =>
-    client.notifications.some(({ method, params }) => method === 'session.notice' && /reset/.test(params.message)));
+  const reset = () =>
+    clients.every((client) =>
+      client.notifications.some(
+        ({ method, params }) => method === 'session.notice' && /reset/.test(params.message),
+      ),
+    );
   for (let i = 1; i < 400 && !reset(); i++) {
-    await clients[i % 2].call('camera.set', { eye: [i / 1000, 0.27, 1.08], target: [0, 0.27, 0], revision: i });
+    await clients[i % 2].call('camera.set', {
+      eye: [i / 1000, 0.27, 1.08],
+      target: [0, 0.27, 0],
+      revision: i,
+    });
     await sleep(50);
   }
   assert.ok(reset(), 'the context was not lost');
   for (const client of clients) {
     const from = client.frames.length;
-    await client.call('camera.set', { eye: [0.2, 0.27, 1.08], target: [0, 0.27, 0], revision: 1000 });
-    await client.until(() => client.frames.slice(from).find((f) => f.cameraRevision === 1000), 'a frame');
+    await client.call('camera.set', {
+      eye: [0.2, 0.27, 1.08],
+      target: [0, 0.27, 0],
+      revision: 1000,
+    });
+    await client.until(
+      () => client.frames.slice(from).find((f) => f.cameraRevision === 1000),
+      'a frame',
+    );
   }
   assert.equal((await clients[1].call('scene.get')).result.settings.exposure_ev, 1.5);
   await clients[0].call('pick', { x: 32, y: 30 });

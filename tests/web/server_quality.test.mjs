@@ -1,5 +1,6 @@
-// Proves that the daemon trades quality for speed as PROTOCOL.md says: starts voxcastd with a built-in scene, moves a
-// camera or keeps it at rest, and reads rows and convergence from the frames' headers.
+// Proves that the daemon trades quality for speed as PROTOCOL.md says: starts voxcastd with a
+// built-in scene, moves a camera or keeps it at rest, and reads rows and convergence from the
+// frames' headers.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_quality.test.mjs
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -31,14 +32,21 @@ let revision = 0;
 async function move(client, count, pauseMs) {
   for (let i = 0; i < count; i++) {
     revision++;
-    client.notify('camera.set', { eye: [(revision % 100) / 100, 1, 3.5], target: [0, 1, 0], revision });
+    client.notify('camera.set', {
+      eye: [(revision % 100) / 100, 1, 3.5],
+      target: [0, 1, 0],
+      revision,
+    });
     await sleep(pauseMs);
   }
   return revision;
 }
 
 const converged = (client, row) =>
-  client.until(() => client.frames.at(-1)?.converged && client.frames.at(-1).quality === row, 'a converged frame');
+  client.until(
+    () => client.frames.at(-1)?.converged && client.frames.at(-1).quality === row,
+    'a converged frame',
+  );
 
 describe('quality', () => {
   let daemon;
@@ -54,7 +62,10 @@ describe('quality', () => {
     assert.equal(client.frames.at(-1).convergence, 1);
     for (const frame of client.frames)
       if (frame.quality < FINAL) assert.ok(frame.convergence <= 0.5 && !frame.converged);
-    await client.until(() => client.notifications.some((n) => n.params?.convergence === 1), 'the last statistics');
+    await client.until(
+      () => client.notifications.some((n) => n.params?.convergence === 1),
+      'the last statistics',
+    );
     const used = processorSeconds(daemon);
     await sleep(1500);
     assert.equal(client.frames.length, count);
@@ -66,7 +77,10 @@ describe('quality', () => {
     const client = await hello(daemon);
     await converged(client, FINAL);
     let at = await move(client, 1, 0);
-    const moved = await client.until(() => client.frames.find((f) => f.cameraRevision === at), 'the moved camera');
+    const moved = await client.until(
+      () => client.frames.find((f) => f.cameraRevision === at),
+      'the moved camera',
+    );
     assert.equal(moved.quality, INTERACTIVE);
     assert.ok(moved.convergence < 1 && !moved.converged);
     await converged(client, FINAL);
@@ -85,7 +99,10 @@ describe('quality', () => {
     await client.call('view.configure', { adaptive: false, quality: 'final' });
     await converged(client, FINAL);
     const at = await move(client, 5, 30);
-    await client.until(() => client.frames.find((f) => f.cameraRevision === at), 'the moved camera');
+    await client.until(
+      () => client.frames.find((f) => f.cameraRevision === at),
+      'the moved camera',
+    );
     for (const frame of client.frames)
       if (frame.frameId > before) assert.equal(frame.quality, FINAL);
     await client.close();
@@ -95,7 +112,8 @@ describe('quality', () => {
     const client = await hello(daemon, { width: 960, height: 540, target_frame_ms: 5 });
     await converged(client, FINAL);
     const first = client.frames.length;
-    for (let i = 0; i < 20 && client.frames.at(-1).quality !== DRAFT; i++) await move(client, 5, 40);
+    for (let i = 0; i < 20 && client.frames.at(-1).quality !== DRAFT; i++)
+      await move(client, 5, 40);
     assert.ok(client.frames.slice(first).some((f) => f.quality === DRAFT));
     await converged(client, FINAL);
     await client.close();
@@ -111,7 +129,10 @@ describe('quality', () => {
     assert.ok(!client.frames.at(-1).converged, 'a command does not wait for the picture');
     await client.untilStill(1500);
     const frames = client.frames.slice(first);
-    assert.ok(frames.at(-1).convergence > 0.9, `the last frame is ${frames.at(-1).convergence} on its way`);
+    assert.ok(
+      frames.at(-1).convergence > 0.9,
+      `the last frame is ${frames.at(-1).convergence} on its way`,
+    );
     assert.ok(frames[0].convergence < frames.at(-1).convergence);
     const used = processorSeconds(daemon);
     await sleep(1000);

@@ -1,6 +1,6 @@
 // Proves that the method `reference` streams as PROTOCOL.md says: samples rise and noise falls from
-// frame to frame, an edit and a new camera start it anew, commands do not wait for it, and the daemon
-// rests when it has converged. The furnace has little noise, so that this takes seconds.
+// frame to frame, an edit and a new camera start it anew, commands do not wait for it, and the
+// daemon rests when it has converged. The furnace has little noise, so that this takes seconds.
 // Run: VOXCASTD=build/release/bin/voxcastd node --test tests/web/server_reference.test.mjs
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -34,7 +34,10 @@ describe('reference', () => {
 
   test('adds samples until the noise is low, then rests', async () => {
     const client = await hello(daemon);
-    await client.until(() => client.frames.at(-1)?.converged && traced(client).length, 'a converged reference');
+    await client.until(
+      () => client.frames.at(-1)?.converged && traced(client).length,
+      'a converged reference',
+    );
     const frames = traced(client).filter(({ width }) => width === 64);
     assert.ok(frames.length > 2, 'it comes in several frames');
     for (let i = 1; i < frames.length; i++) {
@@ -52,11 +55,15 @@ describe('reference', () => {
 
   test('starts anew with each edit and camera', async () => {
     const client = await hello(daemon, { width: 320, height: 180 });
-    await client.until(() => traced(client).some((f) => f.width === 320 && f.referenceSamples > 4), 'some samples');
+    await client.until(
+      () => traced(client).some((f) => f.width === 320 && f.referenceSamples > 4),
+      'some samples',
+    );
     const edit = await client.call('material.update', { id: 0, set: { roughness: 0.9 } });
     assert.ok(edit.result, JSON.stringify(edit.error));
     assert.ok(!client.frames.at(-1).converged, 'a command does not wait for paths');
-    const edited = () => client.frames.filter(({ sceneRevision }) => sceneRevision >= edit.result.revision);
+    const edited = () =>
+      client.frames.filter(({ sceneRevision }) => sceneRevision >= edit.result.revision);
     await client.until(() => edited().length, 'a frame with the edit');
     assert.equal(edited()[0].referenceSamples, 0, 'direct light shows the edit at once');
     await client.until(() => edited().some((f) => f.referenceSamples > 0), 'the edit, traced');

@@ -1,6 +1,7 @@
 import { srgbFromLinear } from '../math/color.js';
 
-// As in renderer/metrics/heat_map.c: lightness grows evenly, hue goes from violet through red to yellow.
+// As in renderer/metrics/heat_map.c: lightness grows evenly, hue goes from violet through red to
+// yellow.
 const HIGHEST_LIGHTNESS = 0.97;
 const LARGEST_CHROMA = 0.22;
 const FIRST_HUE_RAD = (290 * Math.PI) / 180;
@@ -8,7 +9,11 @@ const LAST_HUE_RAD = (470 * Math.PI) / 180;
 const BISECTION_STEPS = 16;
 
 /** Linear sRGB of an OKLab colour (Ottosson 2020). @returns {number[]} may be outside of 0 to 1 */
-function linearFromOklab(/** @type {number} */ lightness, /** @type {number} */ a, /** @type {number} */ b) {
+function linearFromOklab(
+  /** @type {number} */ lightness,
+  /** @type {number} */ a,
+  /** @type {number} */ b,
+) {
   const l = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3;
   const m = (lightness - 0.1055613458 * a - 0.0638541728 * b) ** 3;
   const s = (lightness - 0.0894841775 * a - 1.291485548 * b) ** 3;
@@ -34,7 +39,9 @@ export function heatMapColor(error) {
     if (isShown(colorOf(middle))) inside = middle;
     else outside = middle;
   }
-  return colorOf(inside).map((value) => Math.round(255 * srgbFromLinear(Math.min(Math.max(value, 0), 1))));
+  return colorOf(inside).map((value) =>
+    Math.round(255 * srgbFromLinear(Math.min(Math.max(value, 0), 1))),
+  );
 }
 
 /** The whole scale as a CSS gradient, from 0 to 1. @param {string} [direction] */

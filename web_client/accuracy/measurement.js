@@ -17,8 +17,8 @@ const ENDED = ['done', 'cancelled', 'failed'];
 /**
  * This client's newest measurement: its progress and its results.
  *
- * Events: `changed` (progress), `results` (no detail: `results` is another object), `begun` (another measurement, or
- * none).
+ * Events: `changed` (progress), `results` (no detail: `results` is another object), `begun`
+ * (another measurement, or none).
  */
 export class Measurement extends EventTarget {
   /**
@@ -66,10 +66,14 @@ export class Measurement extends EventTarget {
 
   /**
    * Measures this client's view as it is now, in place of what was measured before.
-   * @param {{ladder: string, noise: number, seconds: number}} params noise: standard error over mean luminance
+   * @param {{ladder: string, noise: number, seconds: number}} params noise: standard error over
+   *   mean luminance
    */
   async start(params) {
-    const { measurement, rung_count, revision } = await this.connection.call('accuracy.start', params);
+    const { measurement, rung_count, revision } = await this.connection.call(
+      'accuracy.start',
+      params,
+    );
     this.#begin(measurement, revision);
     const early = this.stray?.measurement === measurement ? this.stray : null;
     this.takeProgress(early ?? { measurement, state: 'queued', done: 0, rung_count });

@@ -9,7 +9,8 @@ const MAX_TURN_RAD = 2e-4;
 const MAX_ASPECT = 0.02; // sizes are rounded to whole pixels
 
 /** The cosine of the largest rotation differs from 1 by its square. */
-const isSameDirection = (/** @type {any} */ a, /** @type {any} */ b) => 1 - dot(a, b) <= MAX_TURN_RAD ** 2 / 2 + 1e-12;
+const isSameDirection = (/** @type {any} */ a, /** @type {any} */ b) =>
+  1 - dot(a, b) <= MAX_TURN_RAD ** 2 / 2 + 1e-12;
 
 /** Whether two cameras see the same. @param {CameraPose} a @param {CameraPose} b */
 export function isSamePose(a, b) {
@@ -22,5 +23,9 @@ export function isSamePose(a, b) {
   );
 }
 
-/** Whether images of two sizes show the same part of the world. @param {number} a width over height @param {number} b */
+/**
+ * Whether images of two sizes show the same part of the world.
+ * @param {number} a width over height
+ * @param {number} b
+ */
 export const isSameAspect = (a, b) => Math.abs(a / b - 1) <= MAX_ASPECT;

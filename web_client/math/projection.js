@@ -47,7 +47,8 @@ export function rayThrough(camera, aspect, x, y) {
 }
 
 /**
- * How far along an axis (in units of `axis`) the ray comes closest to it; null if they are parallel.
+ * How far along an axis (in units of `axis`) the ray comes closest to it; null if they are
+ * parallel.
  * @param {Ray} ray @param {Vector} origin @param {Vector} axis of unit length
  */
 export function closestOnAxis(ray, origin, axis) {

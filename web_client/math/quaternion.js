@@ -19,7 +19,11 @@ export function rotate(q, v) {
   ];
 }
 
-/** Rotates about X, then Y, then Z (fixed axes), as people type them. @param {number[]} degrees @returns {number[]} */
+/**
+ * Rotates about X, then Y, then Z (fixed axes), as people type them.
+ * @param {number[]} degrees
+ * @returns {number[]}
+ */
 export function fromEulerDegrees([dx, dy, dz]) {
   const [cx, cy, cz] = [dx, dy, dz].map((d) => Math.cos(d / DEGREES / 2));
   const [sx, sy, sz] = [dx, dy, dz].map((d) => Math.sin(d / DEGREES / 2));
@@ -32,7 +36,9 @@ export function fromEulerDegrees([dx, dy, dz]) {
 }
 
 /**
- * The inverse of fromEulerDegrees: of the two solutions, the smaller angles. @param {number[]} q @returns {number[]}
+ * The inverse of fromEulerDegrees: of the two solutions, the smaller angles.
+ * @param {number[]} q
+ * @returns {number[]}
  */
 export function toEulerDegrees([x, y, z, w]) {
   const sine = Math.max(-1, Math.min(1, 2 * (w * y - z * x)));

@@ -9,11 +9,11 @@ const ERROR_NOT_PERMITTED = -32001;
 /** @typedef {'connecting' | 'open' | 'waiting' | 'unauthorized'} ConnectionState */
 
 /**
- * The only user of sockets. Keeps a connection to the server, says session.hello, matches replies with requests, and
- * passes on notifications and frames.
+ * The only user of sockets. Keeps a connection to the server, says session.hello, matches replies
+ * with requests, and passes on notifications and frames.
  *
- * Events: `state`, `hello` (detail: the server's description), `notification` (detail: method and params), `frame`
- * (detail: header and jpeg).
+ * Events: `state`, `hello` (detail: the server's description), `notification` (detail: method and
+ * params), `frame` (detail: header and jpeg).
  */
 export class Connection extends EventTarget {
   /** @param {string} url @param {() => {name?: string, token?: string}} getIdentity */

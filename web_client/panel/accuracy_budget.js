@@ -5,12 +5,16 @@ import { errorChart } from './error_chart.js';
 
 const FIRST = 1;
 
-/** The slider for the time that a frame may take. It draws with the most accurate configuration that keeps it. */
+/**
+ * The slider for the time that a frame may take. It draws with the most accurate configuration that
+ * keeps it.
+ */
 export class AccuracyBudget {
   /**
    * @param {HTMLElement} root
    * @param {import('./app_context.js').AppContext} app
-   * @param {{ onChoose: (name: string) => void, onMove: () => void }} options onMove: another budget is shown
+   * @param {{ onChoose: (name: string) => void, onMove: () => void }} options onMove: another
+   *   budget is shown
    */
   constructor(root, app, options) {
     this.app = app;
@@ -29,10 +33,22 @@ export class AccuracyBudget {
       onchange: () => this.pick && options.onChoose(this.pick.name),
     });
     this.marks = element('div', { class: 'budget-marks', 'aria-hidden': 'true' });
-    this.marks.append(...BUDGETS.map(({ name }, i) => element('span', { style: `--place:${i / (BUDGETS.length - 1)}` }, name)));
+    this.marks.append(
+      ...BUDGETS.map(({ name }, i) =>
+        element('span', { style: `--place:${i / (BUDGETS.length - 1)}` }, name),
+      ),
+    );
     this.text = element('p', { class: 'budget-text' });
-    this.use = element('button', { type: 'button', onclick: () => options.onChoose(this.pick.name) }, 'Draw with it');
-    root.append(element('div', { class: 'budget' }, this.slider, this.marks), this.text, element('div', { class: 'actions' }, this.use));
+    this.use = element(
+      'button',
+      { type: 'button', onclick: () => options.onChoose(this.pick.name) },
+      'Draw with it',
+    );
+    root.append(
+      element('div', { class: 'budget' }, this.slider, this.marks),
+      this.text,
+      element('div', { class: 'actions' }, this.use),
+    );
     /** @type {any} entry of the configuration that fits the budget */
     this.pick = null;
     this.refresh();
@@ -53,22 +69,36 @@ export class AccuracyBudget {
     this.use.hidden = !best || view.rung === best.name;
     this.text.textContent = fastest ? describePick(name, best, fastest) : this.#describeNothing();
     this.slider.setAttribute('aria-valuetext', best ? `${name}: ${best.name}` : name);
-    [...this.marks.children].forEach((mark, i) => mark.classList.toggle('chosen', i === this.slider.valueAsNumber));
+    [...this.marks.children].forEach((mark, i) =>
+      mark.classList.toggle('chosen', i === this.slider.valueAsNumber),
+    );
   }
 
   #describeNothing() {
     return this.app.measurement.isRunning
       ? 'The first settings are still to be measured.'
-      : 'Measure the view first: then this finds the most accurate setting that is fast enough, here and on this machine.';
+      : 'Measure the view first: then this finds the most accurate setting that is fast ' +
+          'enough, here and on this machine.';
   }
 }
 
-const errorText = (/** @type {any} */ rung) => `LDR-FLIP ${errorChart.short(rung.converged.metrics.ldr_flip)}`;
+const errorText = (/** @type {any} */ rung) =>
+  `LDR-FLIP ${errorChart.short(rung.converged.metrics.ldr_flip)}`;
 
-function describePick(/** @type {string} */ name, /** @type {any} */ best, /** @type {any} */ fastest) {
+function describePick(
+  /** @type {string} */ name,
+  /** @type {any} */ best,
+  /** @type {any} */ fastest,
+) {
   if (!best)
-    return `Nothing measured keeps ${name}: the fastest, ${rungTitle(fastest.name)}, takes ${msText(fastest.frame_ms.median)} a frame (${errorText(fastest)}).`;
+    return (
+      `Nothing measured keeps ${name}: the fastest, ${rungTitle(fastest.name)}, takes ` +
+      `${msText(fastest.frame_ms.median)} a frame (${errorText(fastest)}).`
+    );
   const still = `, ${msText(best.converged.ms)} to the final picture`;
   const budget = name === 'still' ? 'When time does not matter' : `Within ${name}`;
-  return `${budget}: ${rungTitle(best.name)}, ${errorText(best)}, ${msText(best.frame_ms.median)} a frame${still}.`;
+  return (
+    `${budget}: ${rungTitle(best.name)}, ${errorText(best)}, ${msText(best.frame_ms.median)} a ` +
+    `frame${still}.`
+  );
 }

@@ -7,7 +7,10 @@ const HEIGHT_PX = 236;
 const TIP_ID = 'error-tip';
 const GAP_PX = 10;
 
-/** The chart of error against time: cost and accuracy of each measured configuration; a click draws with it. */
+/**
+ * The chart of error against time: cost and accuracy of each measured configuration; a click draws
+ * with it.
+ */
 export class AccuracyChart {
   /**
    * @param {HTMLElement} root
@@ -32,7 +35,8 @@ export class AccuracyChart {
     document.body.append(this.tip);
     this.view = new ErrorChartView(this.svg, {
       label: 'Measured settings, from fast to slow; Enter draws with one',
-      onShow: (/** @type {any} */ point, /** @type {SVGElement} */ mark) => this.#showTip(point, mark),
+      onShow: (/** @type {any} */ point, /** @type {SVGElement} */ mark) =>
+        this.#showTip(point, mark),
       onHide: () => (this.tip.hidden = true),
       onChoose: (/** @type {any} */ { rung }) => options.onChoose(rung.name),
     });
@@ -43,7 +47,8 @@ export class AccuracyChart {
     const { results } = this.app.measurement;
     const hasRungs = this.app.measurement.rungs.length > 0;
     this.empty.hidden = hasRungs;
-    for (const part of [this.figure, this.legend, this.noise, this.section.domElement]) part.hidden = !hasRungs;
+    for (const part of [this.figure, this.legend, this.noise, this.section.domElement])
+      part.hidden = !hasRungs;
     if (!hasRungs) this.tip.hidden = true;
     const width = this.figure.clientWidth;
     if (!hasRungs || width < 2) return;
@@ -69,13 +74,25 @@ export class AccuracyChart {
     const named = (/** @type {Record<string, string>} */ words) =>
       Object.fromEntries(Object.entries(words).map(([name, title]) => [title, name]));
     const times = Object.fromEntries(
-      Object.entries(errorChart.TIMES).map(([name, time]) => [/** @type {any} */ (time).short, name]),
+      Object.entries(errorChart.TIMES).map(([name, time]) => [
+        /** @type {any} */ (time).short,
+        name,
+      ]),
     );
     this.section = makeSection(root, 'What the chart shows', false);
-    this.metric = this.section.add(this.choice, 'metric', { 'LDR-FLIP': 'ldr_flip' }).name('Error by').onChange(redraw);
+    this.metric = this.section
+      .add(this.choice, 'metric', { 'LDR-FLIP': 'ldr_flip' })
+      .name('Error by')
+      .onChange(redraw);
     this.section.add(this.choice, 'time', times).name('Against').onChange(redraw);
-    this.section.add(this.choice, 'state', named(errorChart.STATES)).name('Of the').onChange(redraw);
-    this.part = this.section.add(this.choice, 'part', named(errorChart.PARTS)).name('Of').onChange(redraw);
+    this.section
+      .add(this.choice, 'state', named(errorChart.STATES))
+      .name('Of the')
+      .onChange(redraw);
+    this.part = this.section
+      .add(this.choice, 'part', named(errorChart.PARTS))
+      .name('Of')
+      .onChange(redraw);
   }
 
   /** The results say which metrics there are. */
@@ -84,7 +101,9 @@ export class AccuracyChart {
     const known = rows.map((/** @type {any} */ { name }) => name).join();
     if (this.knownMetrics === known) return;
     this.knownMetrics = known;
-    this.metric.options(Object.fromEntries(rows.map((/** @type {any} */ { name, title }) => [title, name])));
+    this.metric.options(
+      Object.fromEntries(rows.map((/** @type {any} */ { name, title }) => [title, name])),
+    );
     this.metric.name('Error by').onChange(() => this.refresh());
     this.part.show(results.setup.reference.direct === true);
   }
@@ -93,14 +112,21 @@ export class AccuracyChart {
     const methods = new Set(results.rungs.map((/** @type {any} */ { method }) => method));
     this.legend.replaceChildren(
       ...[...methods].map((method) =>
-        element('span', {}, element('b', { style: `background:${errorChart.colorOf(method)}` }), String(method)),
+        element(
+          'span',
+          {},
+          element('b', { style: `background:${errorChart.colorOf(method)}` }),
+          String(method),
+        ),
       ),
       element('span', {}, 'large: none is faster and better'),
     );
   }
 
   #showTip(/** @type {any} */ { rung, ms }, /** @type {SVGElement} */ mark) {
-    const title = this.app.measurement.results.metrics.find((/** @type {any} */ row) => row.name === this.choice.metric)?.title;
+    const title = this.app.measurement.results.metrics.find(
+      (/** @type {any} */ row) => row.name === this.choice.metric,
+    )?.title;
     const figures = [
       [title, errorChart.short(errorChart.valueOf(rung, this.choice))],
       [errorChart.TIMES[this.choice.time].short.replace(/, ms$/, ''), msText(ms)],
@@ -109,7 +135,11 @@ export class AccuracyChart {
     this.tip.replaceChildren(
       element('b', {}, rungTitle(rung.name)),
       element('small', {}, errorChart.settingText(rung)),
-      element('dl', { class: 'info' }, ...figures.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)])),
+      element(
+        'dl',
+        { class: 'info' },
+        ...figures.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]),
+      ),
       this.#makePicture(rung),
     );
     this.tip.hidden = false;
@@ -117,20 +147,27 @@ export class AccuracyChart {
     this.#placeTip(mark);
   }
 
-  /** The final image, or the strip, which includes the first one. Its size is set before it has loaded. */
+  /**
+   * The final image, or the strip, which includes the first one. Its size is set before it has
+   * loaded.
+   */
   #makePicture(/** @type {any} */ rung) {
     const { width, height } = this.app.measurement.results.setup.scene;
     const isCold = this.choice.state === 'cold';
     return element('img', {
       src: this.app.measurement.url(isCold ? rung.pictures.strip : rung.pictures.converged),
-      alt: `${isCold ? 'Reference image, first and final picture and error' : 'Final picture'} of ${rung.name}`,
+      alt:
+        `${isCold ? 'Reference image, first and final picture and error' : 'Final picture'} of ` +
+        `${rung.name}`,
       style: `aspect-ratio:${isCold ? 4 * width : width}/${height}`,
     });
   }
 
   /** Beside the panel, or above it where the panel is a sheet: never over the chart. */
   #placeTip(/** @type {SVGElement} */ mark) {
-    const panel = /** @type {HTMLElement} */ (this.figure.closest('.panel') ?? this.figure).getBoundingClientRect();
+    const panel = /** @type {HTMLElement} */ (
+      this.figure.closest('.panel') ?? this.figure
+    ).getBoundingClientRect();
     const { top } = mark.getBoundingClientRect();
     const isSheet = panel.left < this.tip.offsetWidth + GAP_PX;
     const highest = window.innerHeight - this.tip.offsetHeight - GAP_PX;
@@ -146,5 +183,9 @@ export class AccuracyChart {
 function describeNoise(/** @type {any} */ results, /** @type {any} */ { part, metric }) {
   const noise = results.noise?.[part]?.[metric];
   if (!noise || noise.enough) return '';
-  return `The reference image itself errs by ${errorChart.short(noise.reference)}, more than a tenth of the least error (${errorChart.short(noise.smallest)}): ask for less noise to tell the best apart.`;
+  return (
+    `The reference image itself errs by ${errorChart.short(noise.reference)}, more than a ` +
+    `tenth of the least error (${errorChart.short(noise.smallest)}): ask for less noise to ` +
+    'tell the best apart.'
+  );
 }

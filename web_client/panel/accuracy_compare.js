@@ -7,18 +7,36 @@ const MODES = [
   { name: 'error', title: 'Error map' },
 ];
 
-/** What is laid over the image: nothing, the reference image beside it, or the error map of a configuration. */
+/**
+ * What is laid over the image: nothing, the reference image beside it, or the error map of a
+ * configuration.
+ */
 export class AccuracyCompare {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
     this.app = app;
     this.mode = 'none';
     this.inputs = MODES.map(({ name }) =>
-      element('input', { type: 'radio', name: 'comparison', value: name, checked: name === 'none', onchange: () => this.#choose(name) }),
+      element('input', {
+        type: 'radio',
+        name: 'comparison',
+        value: name,
+        checked: name === 'none',
+        onchange: () => this.#choose(name),
+      }),
     );
-    const labels = MODES.map(({ title }, i) => element('label', {}, this.inputs[i], element('span', {}, title)));
+    const labels = MODES.map(({ title }, i) =>
+      element('label', {}, this.inputs[i], element('span', {}, title)),
+    );
     this.text = element('p', { class: 'hint' });
-    root.append(element('div', { class: 'segments', role: 'radiogroup', 'aria-label': 'Over the picture' }, ...labels), this.text);
+    root.append(
+      element(
+        'div',
+        { class: 'segments', role: 'radiogroup', 'aria-label': 'Over the picture' },
+        ...labels,
+      ),
+      this.text,
+    );
     app.comparison.addEventListener('return', () => this.#goBack());
     app.camera.addEventListener('changed', () => this.refresh());
     app.picture.addEventListener('presented', () => this.#checkShape());
@@ -48,13 +66,18 @@ export class AccuracyCompare {
     });
   }
 
-  /** Whose errors are shown: those of the configuration that draws, or of the client's own settings. */
+  /**
+   * Whose errors are shown: those of the configuration that draws, or of the client's own settings.
+   */
   #errorRung() {
     const { measurement, view } = this.app;
     return measurement.rung(view.rung || 'live') ?? measurement.rungs[0] ?? null;
   }
 
-  /** Why the measured images do not fit over the shown one; "" if they do. @returns {'' | 'camera' | 'shape'} */
+  /**
+   * Why the measured images do not fit over the shown one; "" if they do.
+   * @returns {'' | 'camera' | 'shape'}
+   */
   #obstacle() {
     const view = this.measuredView;
     const { canvas } = this.app.picture;
@@ -72,9 +95,14 @@ export class AccuracyCompare {
   #describe(/** @type {boolean} */ hasTruth, /** @type {any} */ shown) {
     if (!hasTruth)
       return this.app.measurement.isRunning
-        ? 'The reference image can be laid beside the picture once the first setting has been measured.'
+        ? 'The reference image can be laid beside the picture once the first setting has been ' +
+            'measured.'
         : 'Measure the view first: then the reference image can be laid beside the picture.';
-    if (this.mode === 'split') return 'Drag the line over the picture, or move it by the arrow keys: live on its left, reference image on its right.';
+    if (this.mode === 'split')
+      return (
+        'Drag the line over the picture, or move it by the arrow keys: live on its left, ' +
+        'reference image on its right.'
+      );
     if (this.mode === 'error') return `Where the final picture of ${shown.name} errs, by LDR-FLIP.`;
     return '';
   }

@@ -16,19 +16,35 @@ export class AccuracyMeasure {
     this.choice = { ladder: 'quick', noise: 1, seconds: 120 };
     const gui = makeSection(root, 'Measurement');
     const ladder = gui.add(this.choice, 'ladder', LADDERS).name('Settings');
-    ladder.domElement.title = 'Which settings are measured: a few presets, or all that differ in one thing.';
-    const noise = gui.add(this.choice, 'noise', NOISE.least, NOISE.most, NOISE.step).name('Noise of the reference (%)');
-    noise.domElement.title = 'The reference image is traced until its pixels err by no more than this. Less takes longer: half the noise, four times the time.';
+    ladder.domElement.title =
+      'Which settings are measured: a few presets, or all that differ in one thing.';
+    const noise = gui
+      .add(this.choice, 'noise', NOISE.least, NOISE.most, NOISE.step)
+      .name('Noise of the reference (%)');
+    noise.domElement.title =
+      'The reference image is traced until its pixels err by no more than this. Less takes ' +
+      'longer: half the noise, four times the time.';
     const seconds = gui.add(this.choice, 'seconds', TIMES).name('At most for');
-    seconds.domElement.title = 'Light through glass may take hours to be rid of noise. The chart tells what noise is left.';
-    this.begin = element('button', { type: 'button', onclick: () => this.#start() }, 'Measure this view');
+    seconds.domElement.title =
+      'Light through glass may take hours to be rid of noise. The chart tells what noise is left.';
+    this.begin = element(
+      'button',
+      { type: 'button', onclick: () => this.#start() },
+      'Measure this view',
+    );
     this.stop = element('button', { type: 'button', onclick: () => this.#cancel() }, 'Cancel');
     this.text = element('p', { class: 'hint' });
     this.bar = element('progress', { max: 1, 'aria-label': 'Progress of the measurement' });
     // Screen readers announce the steps, not every half second.
     this.step = element('p', { class: 'visually-hidden', role: 'status' });
-    root.append(element('div', { class: 'actions' }, this.begin, this.stop), this.bar, this.text, this.step);
-    for (const event of ['changed', 'begun']) app.measurement.addEventListener(event, () => this.refresh());
+    root.append(
+      element('div', { class: 'actions' }, this.begin, this.stop),
+      this.bar,
+      this.text,
+      this.step,
+    );
+    for (const event of ['changed', 'begun'])
+      app.measurement.addEventListener(event, () => this.refresh());
     app.connection.addEventListener('state', () => this.refresh());
     this.refresh();
   }
@@ -57,7 +73,11 @@ export class AccuracyMeasure {
     try {
       // The image must not follow the measurement that this one replaces.
       if (this.app.view.rung) await this.app.view.chooseRung('');
-      await this.app.measurement.start({ ladder, noise: Number((noise / 100).toPrecision(6)), seconds });
+      await this.app.measurement.start({
+        ladder,
+        noise: Number((noise / 100).toPrecision(6)),
+        seconds,
+      });
     } catch (error) {
       this.app.toasts.showError(/** @type {any} */ (error));
     }
@@ -71,7 +91,8 @@ export class AccuracyMeasure {
 
 /** Of the present step; null if unknown. Noise falls with the square root of the samples. */
 function fractionDone(/** @type {any} */ progress) {
-  if (progress?.state === 'rungs') return progress.rung_count ? progress.done / progress.rung_count : null;
+  if (progress?.state === 'rungs')
+    return progress.rung_count ? progress.done / progress.rung_count : null;
   if (progress?.state !== 'reference' || !(progress.noise > 0)) return null;
   return Math.min((progress.noise_wanted / progress.noise) ** 2, 1);
 }
@@ -84,15 +105,23 @@ const left = (/** @type {any} */ { seconds_left }) => {
 /** @param {import('../accuracy/measurement.js').Progress | null} progress */
 function describeProgress(progress) {
   if (!progress)
-    return 'Traces the reference image of what you see in the background, then draws it by each setting and tells how far that is from the reference image, and what it costs.';
+    return (
+      'Traces the reference image of what you see in the background, then draws it by each ' +
+      'setting and tells how far that is from the reference image, and what it costs.'
+    );
   const count = `${progress.done ?? 0} of ${progress.rung_count ?? '?'} settings`;
   switch (progress.state) {
     case 'queued':
       return 'Waits until another measurement has ended.';
     case 'reference': {
       const noise = progress.noise ? `noise ${percentText(progress.noise)}` : 'noise not known yet';
-      const wanted = progress.noise_wanted ? ` (wanted: ${percentText(progress.noise_wanted)})` : '';
-      return `Traces the reference: ${progress.samples ?? 0} samples a pixel, ${noise}${wanted}.${left(progress)}`;
+      const wanted = progress.noise_wanted
+        ? ` (wanted: ${percentText(progress.noise_wanted)})`
+        : '';
+      return (
+        `Traces the reference: ${progress.samples ?? 0} samples a pixel, ` +
+        `${noise}${wanted}.${left(progress)}`
+      );
     }
     case 'rungs':
       return `Measured ${count}${progress.rung ? `; now ${progress.rung}` : ''}.${left(progress)}`;

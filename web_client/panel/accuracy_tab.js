@@ -5,7 +5,10 @@ import { AccuracyChart } from './accuracy_chart.js';
 import { AccuracyCompare } from './accuracy_compare.js';
 import { AccuracyMeasure } from './accuracy_measure.js';
 
-/** How far the image is from the reference image, what less error costs, and the choice of a configuration. */
+/**
+ * How far the image is from the reference image, what less error costs, and the choice of a
+ * configuration.
+ */
 export class AccuracyTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
@@ -15,7 +18,11 @@ export class AccuracyTab {
     const [form, chart, budget, compare] = parts;
     this.edited = element('p', { class: 'note', role: 'status', hidden: true });
     this.drawnWith = element('span', {});
-    this.back = element('button', { type: 'button', onclick: () => this.#draw('') }, 'Back to own settings');
+    this.back = element(
+      'button',
+      { type: 'button', onclick: () => this.#draw('') },
+      'Back to own settings',
+    );
     this.drawn = element('div', { class: 'drawn-with' }, this.drawnWith, this.back);
     root.append(
       element('h2', {}, 'Accuracy'),
@@ -40,7 +47,8 @@ export class AccuracyTab {
       onChoose: (name) => this.#draw(name),
     });
     this.compare = new AccuracyCompare(compare, app);
-    for (const event of ['begun', 'results']) measurement.addEventListener(event, () => this.refresh());
+    for (const event of ['begun', 'results'])
+      measurement.addEventListener(event, () => this.refresh());
     measurement.addEventListener('changed', () => {
       this.budget.refresh();
       this.compare.refresh();

@@ -13,7 +13,10 @@ export class AnimationControls {
     this.root = element('section', { hidden: true });
     /** @type {{id: number, draw: () => void, refresh: () => void}[]} */
     this.players = [];
-    /** @type {Map<number, {timeS: number, at: number}>} when the time of a playing animation was last known */
+    /**
+     * @type {Map<number, {timeS: number, at: number}>} when the time of a playing animation was
+     *   last known
+     */
     this.known = new Map();
     setInterval(() => this.players.forEach((player) => player.draw()), DRAW_MS);
   }
@@ -56,7 +59,12 @@ export class AnimationControls {
       class: 'play',
       onclick: () => {
         const now = app.document.find('animation', id);
-        app.editor.update('animation', id, { playing: !now.playing, time_s: this.#timeOf(now) }, false);
+        app.editor.update(
+          'animation',
+          id,
+          { playing: !now.playing, time_s: this.#timeOf(now) },
+          false,
+        );
       },
     });
     const seek = element('input', {

@@ -16,9 +16,18 @@ export class Chart {
     this.values = /** @type {number[]} */ ([]);
     this.unit = unit;
     this.now = element('output', {}, '–');
-    const box = element('div', { class: 'chart-box', role: 'img', 'aria-label': `${title} over the last ${SECONDS} seconds` });
+    const box = element('div', {
+      class: 'chart-box',
+      role: 'img',
+      'aria-label': `${title} over the last ${SECONDS} seconds`,
+    });
     container.append(element('div', { class: 'chart' }, element('h3', {}, title, this.now), box));
-    const axis = { stroke: '#98a1ad', grid: { stroke: '#2c3139', width: 1 }, ticks: { show: false }, font: '11px system-ui' };
+    const axis = {
+      stroke: '#98a1ad',
+      grid: { stroke: '#2c3139', width: 1 },
+      ticks: { show: false },
+      font: '11px system-ui',
+    };
     this.plot = new uPlot(
       {
         width: 280,
@@ -27,13 +36,33 @@ export class Chart {
         cursor: { show: false },
         scales: {
           x: { time: false, range: () => [-SECONDS, 0] },
-          y: { range: (/** @type {any} */ _plot, /** @type {number} */ _low, /** @type {number} */ high) => [0, Math.max(high * 1.15, 1)] },
+          y: {
+            range: (
+              /** @type {any} */ _plot,
+              /** @type {number} */ _low,
+              /** @type {number} */ high,
+            ) => [0, Math.max(high * 1.15, 1)],
+          },
         },
         axes: [
-          { ...axis, size: 22, space: 60, values: (/** @type {any} */ _plot, /** @type {number[]} */ at) => at.map((v) => `${v} s`) },
+          {
+            ...axis,
+            size: 22,
+            space: 60,
+            values: (/** @type {any} */ _plot, /** @type {number[]} */ at) =>
+              at.map((v) => `${v} s`),
+          },
           { ...axis, size: 38, space: 24 },
         ],
-        series: [{}, { stroke: color, width: 1.5, fill: `${color}22`, points: { show: true, size: 3, fill: color } }],
+        series: [
+          {},
+          {
+            stroke: color,
+            width: 1.5,
+            fill: `${color}22`,
+            points: { show: true, size: 3, fill: color },
+          },
+        ],
       },
       [[], []],
       box,

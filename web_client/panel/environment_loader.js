@@ -8,21 +8,30 @@ export class EnvironmentLoader {
     this.select = element('select', { id: 'environment-image', 'aria-label': 'Environment image' });
     this.button = element('button', { type: 'button', onclick: () => this.#load() }, 'Load');
     this.progress = element('progress', { hidden: true, 'aria-label': 'Loading the environment' });
-    this.root = element('div', { class: 'loader', hidden: true }, this.select, this.button, this.progress);
+    this.root = element(
+      'div',
+      { class: 'loader', hidden: true },
+      this.select,
+      this.button,
+      this.progress,
+    );
     this.select.addEventListener('change', () => this.#update());
   }
 
   /** @param {{name: string}[]} environments of scene.list */
   fillList(environments) {
     this.root.hidden = environments.length === 0;
-    this.select.replaceChildren(...environments.map(({ name }) => element('option', { value: name }, name)));
+    this.select.replaceChildren(
+      ...environments.map(({ name }) => element('option', { value: name }, name)),
+    );
     this.refresh();
   }
 
   /** Selects the image that is shown. */
   refresh() {
     const { image } = this;
-    if ([...this.select.options].some((option) => option.value === image)) this.select.value = image;
+    if ([...this.select.options].some((option) => option.value === image))
+      this.select.value = image;
     this.#update();
   }
 

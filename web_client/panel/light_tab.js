@@ -9,7 +9,9 @@ import { makeSection } from './sections.js';
 
 /** @typedef {import('./app_context.js').AppContext} AppContext */
 
-/** Lights: the list, adding and removing, every property; the environment; exposure and tone curve. */
+/**
+ * Lights: the list, adding and removing, every property; the environment; exposure and tone curve.
+ */
 export class LightTab {
   /** @param {HTMLElement} root @param {AppContext} app */
   constructor(root, app) {
@@ -65,14 +67,22 @@ export class LightTab {
     this.lightControls = null;
     if (!light) return;
     const gui = makeSection(this.chosen, light.name || `Light ${light.id}`);
-    this.lightControls = addParameterControls(gui, app.parameters('light'), app.target('light', light.id));
+    this.lightControls = addParameterControls(
+      gui,
+      app.parameters('light'),
+      app.target('light', light.id),
+    );
     this.chosen.append(
       element(
         'div',
         { class: 'actions' },
         element(
           'button',
-          { type: 'button', 'data-remove-light': light.id, onclick: () => app.editor.removeLight(light.id) },
+          {
+            type: 'button',
+            'data-remove-light': light.id,
+            onclick: () => app.editor.removeLight(light.id),
+          },
           `Remove ${light.name || 'light'}`,
         ),
       ),
@@ -109,7 +119,11 @@ export class LightTab {
         icon('light'),
       );
     });
-    const empty = element('p', { class: 'hint' }, 'No lights yet. Emissive surfaces and the environment light the scene; add a light below.');
+    const empty = element(
+      'p',
+      { class: 'hint' },
+      'No lights yet. Emissive surfaces and the environment light the scene; add a light below.',
+    );
     const focused = /** @type {HTMLElement | null} */ (document.activeElement)?.dataset?.light;
     this.list.replaceChildren(...(items.length ? items : [empty]));
     if (focused !== undefined) this.list.querySelector(`[data-light="${focused}"]`)?.focus();

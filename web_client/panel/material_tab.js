@@ -40,11 +40,21 @@ export class MaterialTab {
     this.textures.replaceChildren();
     this.controls = null;
     if (id === null || !material) {
-      this.chosen.append(element('p', { class: 'hint' }, 'Click a surface in the picture, or choose a material above.'));
+      this.chosen.append(
+        element(
+          'p',
+          { class: 'hint' },
+          'Click a surface in the picture, or choose a material above.',
+        ),
+      );
       return;
     }
     const gui = makeSection(this.chosen, material.name || `Material ${id}`);
-    this.controls = addParameterControls(gui, app.parameters('material'), app.target('material', id));
+    this.controls = addParameterControls(
+      gui,
+      app.parameters('material'),
+      app.target('material', id),
+    );
     this.#showTextures(material.textures);
   }
 
@@ -57,7 +67,9 @@ export class MaterialTab {
   #drawList() {
     const { app } = this;
     const items = (app.document.data?.materials ?? []).map((/** @type {any} */ material) => {
-      const [r, g, b] = material.base_color.map((/** @type {number} */ c) => 255 * srgbFromLinear(c));
+      const [r, g, b] = material.base_color.map(
+        (/** @type {number} */ c) => 255 * srgbFromLinear(c),
+      );
       return element(
         'button',
         {
@@ -74,10 +86,13 @@ export class MaterialTab {
     this.list.replaceChildren(...items);
     if (focused !== undefined) this.list.querySelector(`[data-material="${focused}"]`)?.focus();
     const pressed = this.list.querySelector('[aria-pressed=true]');
-    if (pressed && app.selection.materialId !== this.shownId) pressed.scrollIntoView({ block: 'nearest' });
+    if (pressed && app.selection.materialId !== this.shownId)
+      pressed.scrollIntoView({ block: 'nearest' });
   }
 
-  async #showTextures(/** @type {Record<string, {image: number, width: number, height: number}>} */ textures) {
+  async #showTextures(
+    /** @type {Record<string, {image: number, width: number, height: number}>} */ textures,
+  ) {
     const shownId = this.shownId;
     for (const [slot, { image, width, height }] of Object.entries(textures)) {
       const source = await this.#thumbnail(image).catch(() => '');
@@ -86,7 +101,14 @@ export class MaterialTab {
         element(
           'figure',
           {},
-          source ? element('img', { src: source, alt: `${wordsOf(slot)} texture`, width: 64, height: 64 }) : '',
+          source
+            ? element('img', {
+                src: source,
+                alt: `${wordsOf(slot)} texture`,
+                width: 64,
+                height: 64,
+              })
+            : '',
           element('figcaption', {}, wordsOf(slot), element('small', {}, `${width} × ${height}`)),
         ),
       );

@@ -40,9 +40,13 @@ const DEGREES = 180 / Math.PI;
 const rounded = (/** @type {number} */ value) => Number(value.toPrecision(5));
 
 // The picker has 256 steps and truncates: a value just above a step stays on it.
-const pickerFromLinear = (/** @type {number} */ v) => (Math.round(255 * srgbFromLinear(v)) + 1e-3) / 255;
+const pickerFromLinear = (/** @type {number} */ v) =>
+  (Math.round(255 * srgbFromLinear(v)) + 1e-3) / 255;
 
-/** How a type is shown: the value for people, and back. @type {Record<string, {show: Function, read: Function}>} */
+/**
+ * How a type is shown: the value for people, and back.
+ * @type {Record<string, {show: Function, read: Function}>}
+ */
 const CONVERSIONS = {
   plain: { show: (/** @type {any} */ v) => v, read: (/** @type {any} */ v) => v },
   number: { show: rounded, read: (/** @type {number} */ v) => v },
@@ -75,7 +79,11 @@ export function addParameterControls(gui, parameters, target) {
   return { refresh: () => controllers.forEach((controller) => controller.updateDisplay()) };
 }
 
-function addControl(/** @type {any} */ gui, /** @type {Parameter} */ parameter, /** @type {Target} */ target) {
+function addControl(
+  /** @type {any} */ gui,
+  /** @type {Parameter} */ parameter,
+  /** @type {Target} */ target,
+) {
   const { name, type } = parameter;
   const { show, read } = conversionOf(parameter);
   const shown = { [name]: show(target.get(name)) };
@@ -107,7 +115,11 @@ function addControl(/** @type {any} */ gui, /** @type {Parameter} */ parameter, 
   return [controller, addAlpha(gui, parameter, target)];
 }
 
-function makeController(/** @type {any} */ gui, /** @type {Parameter} */ parameter, /** @type {any} */ object) {
+function makeController(
+  /** @type {any} */ gui,
+  /** @type {Parameter} */ parameter,
+  /** @type {any} */ object,
+) {
   const { name, type, unit, values } = parameter;
   const label = labelOf(parameter);
   const factor = unit === 'rad' ? DEGREES : 1;
@@ -115,10 +127,17 @@ function makeController(/** @type {any} */ gui, /** @type {Parameter} */ paramet
     (number) => number * factor,
   );
   if (values)
-    return gui.add(object, name, Object.fromEntries(values.map((v) => [choiceOf(v), v]))).name(label);
+    return gui
+      .add(object, name, Object.fromEntries(values.map((v) => [choiceOf(v), v])))
+      .name(label);
   if (type === 'vec3') return new VectorController(gui, object, name, { min, max, step, label });
   if (type === 'quaternion')
-    return new VectorController(gui, object, name, { min: -360, max: 360, step: 1, label: `${label} (°)` });
+    return new VectorController(gui, object, name, {
+      min: -360,
+      max: 360,
+      step: 1,
+      label: `${label} (°)`,
+    });
   if (type.startsWith('color')) return gui.addColor(object, name).name(label);
   const controller = gui.add(object, name).name(label);
   if (type !== 'float' && type !== 'int') return controller;
@@ -135,7 +154,11 @@ function choiceOf(/** @type {string} */ value) {
 }
 
 /** Disables the control of a value that has no effect now, and says why. */
-function showWhyRests(/** @type {any} */ controller, /** @type {Parameter} */ parameter, /** @type {Target} */ target) {
+function showWhyRests(
+  /** @type {any} */ controller,
+  /** @type {Parameter} */ parameter,
+  /** @type {Target} */ target,
+) {
   const { doc } = parameter;
   const why = whyRests(parameter, target);
   if (controller.domElement.dataset.why === why) return;
@@ -146,12 +169,18 @@ function showWhyRests(/** @type {any} */ controller, /** @type {Parameter} */ pa
   controller.disable(why !== '');
 }
 
-function addAlpha(/** @type {any} */ gui, /** @type {Parameter} */ parameter, /** @type {Target} */ target) {
+function addAlpha(
+  /** @type {any} */ gui,
+  /** @type {Parameter} */ parameter,
+  /** @type {Target} */ target,
+) {
   const { name, live } = parameter;
   const proxy = { alpha: target.get(name)[3] };
   const set = (/** @type {number} */ alpha, /** @type {boolean} */ transient) =>
     target.set(name, [...target.get(name).slice(0, 3), alpha], transient);
-  const controller = gui.add(proxy, 'alpha', parameter.min, parameter.max, parameter.step).name('Alpha');
+  const controller = gui
+    .add(proxy, 'alpha', parameter.min, parameter.max, parameter.step)
+    .name('Alpha');
   controller.onChange((/** @type {number} */ alpha) => live && set(alpha, true));
   controller.onFinishChange((/** @type {number} */ alpha) => set(alpha, false));
   const update = controller.updateDisplay.bind(controller);
@@ -163,7 +192,11 @@ function addAlpha(/** @type {any} */ gui, /** @type {Parameter} */ parameter, /*
   return controller;
 }
 
-function describe(/** @type {any} */ controller, /** @type {Parameter} */ parameter, /** @type {string} */ name) {
+function describe(
+  /** @type {any} */ controller,
+  /** @type {Parameter} */ parameter,
+  /** @type {string} */ name,
+) {
   controller.domElement.dataset.parameter = `${parameter.group}.${name}`;
   controller.domElement.title = parameter.doc;
 }

@@ -7,14 +7,16 @@ const QUALITY_OPTIONS = ['quality', 'adaptive', 'target_frame_ms'];
 const DEBUG_OPTIONS = ['debug_view', 'debug_level', 'debug_face'];
 
 /**
- * Whether a setting is one of global illumination: the method, and what has an effect with some only.
+ * Whether a setting is one of global illumination: the method, and what has an effect with some
+ * only.
  * @param {import('./parameter_controls.js').Parameter} parameter of the group settings
  */
 export const isGiSetting = ({ name, needs = [] }) =>
   name === 'gi_method' || needs.some((need) => need.name === 'gi_method');
 
 /** Whether this tab shows an option of the view. @param {string} name */
-export const isRenderOption = (name) => QUALITY_OPTIONS.includes(name) || DEBUG_OPTIONS.includes(name);
+export const isRenderOption = (name) =>
+  QUALITY_OPTIONS.includes(name) || DEBUG_OPTIONS.includes(name);
 
 /** How the image is made: quality, global illumination, debug views, effects and their reasons. */
 export class RenderTab {
@@ -27,11 +29,20 @@ export class RenderTab {
     this.noEffects = element('p', { class: 'hint' }, 'The first frame will tell.');
     this.measured = element('p', { class: 'note', hidden: true });
     app.view.addEventListener('rung', () => this.#showRung());
-    root.append(element('h2', {}, 'Rendering'), this.measured, this.controls, element('h2', {}, 'Effects of this frame'));
+    root.append(
+      element('h2', {}, 'Rendering'),
+      this.measured,
+      this.controls,
+      element('h2', {}, 'Effects of this frame'),
+    );
     root.append(this.noEffects, this.effects);
     /** @type {{refresh: () => void}[]} */
     this.sections = [];
-    this.offHint = element('p', { class: 'hint' }, 'Choose a method; the rest of this section needs one.');
+    this.offHint = element(
+      'p',
+      { class: 'hint' },
+      'Choose a method; the rest of this section needs one.',
+    );
     /** @type {HTMLElement | null} */
     this.giRoot = null;
   }
@@ -50,7 +61,11 @@ export class RenderTab {
           set: (name, value) => view.configure({ [name]: value }),
         },
       );
-    this.sections = [options('Quality', QUALITY_OPTIONS), this.#addGi(), options('Look inside', DEBUG_OPTIONS)];
+    this.sections = [
+      options('Quality', QUALITY_OPTIONS),
+      this.#addGi(),
+      options('Look inside', DEBUG_OPTIONS),
+    ];
     this.refresh();
   }
 
@@ -65,13 +80,16 @@ export class RenderTab {
   #showRung() {
     const { rung } = this.app.view;
     this.measured.hidden = rung === '';
-    this.measured.textContent = `This view is drawn with ${rung}, as chosen in the tab of accuracy. What is set here shows when it goes back to its own settings.`;
+    this.measured.textContent =
+      `This view is drawn with ${rung}, as chosen in the tab of accuracy. What is set here ` +
+      'shows when it goes back to its own settings.';
   }
 
   /** @param {any} stats a notification of the server */
   takeStats(stats) {
     this.noEffects.hidden = true;
-    if (!this.root.hidden || this.effects.childElementCount === 0) showEffects(this.effects, stats.effects);
+    if (!this.root.hidden || this.effects.childElementCount === 0)
+      showEffects(this.effects, stats.effects);
   }
 
   #addGi() {

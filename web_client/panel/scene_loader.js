@@ -16,7 +16,11 @@ export class SceneLoader {
   /** @param {{source: string, description: string}[]} scenes of scene.list */
   fillList(scenes) {
     const options = scenes.map((scene) =>
-      element('option', { value: scene.source, title: scene.description }, scene.source.replace(/^builtin:/, 'Built-in: ')),
+      element(
+        'option',
+        { value: scene.source, title: scene.description },
+        scene.source.replace(/^builtin:/, 'Built-in: '),
+      ),
     );
     this.select.replaceChildren(...options);
     this.showSource(this.source);

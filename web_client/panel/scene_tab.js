@@ -17,7 +17,12 @@ export class SceneTab {
   constructor(root, app) {
     this.app = app;
     this.loader = new SceneLoader(app);
-    const tree = element('div', { class: 'tree', role: 'tree', tabindex: 0, 'aria-label': 'Scene nodes' });
+    const tree = element('div', {
+      class: 'tree',
+      role: 'tree',
+      tabindex: 0,
+      'aria-label': 'Scene nodes',
+    });
     this.tree = new SceneTree(tree, {
       onChoose: (nodeId) => this.#choose(nodeId),
       onShow: (nodeId, visible) => app.editor.update('node', nodeId, { visible }, false),
@@ -82,7 +87,9 @@ export class SceneTab {
   #choose(/** @type {number} */ nodeId) {
     const { app } = this;
     const node = app.document.find('node', nodeId);
-    const mesh = app.document.data.meshes.find((/** @type {any} */ other) => other.id === node.mesh);
+    const mesh = app.document.data.meshes.find(
+      (/** @type {any} */ other) => other.id === node.mesh,
+    );
     const materialId = mesh?.primitives[0]?.material;
     app.selection.choose({ nodeId, lightId: node.light, materialId });
   }
@@ -119,7 +126,9 @@ export class SceneTab {
       ),
     );
     this.cameras.replaceChildren(
-      ...(cameras.length ? cameras : [element('p', { class: 'hint' }, 'This scene has no cameras.')]),
+      ...(cameras.length
+        ? cameras
+        : [element('p', { class: 'hint' }, 'This scene has no cameras.')]),
     );
   }
 }

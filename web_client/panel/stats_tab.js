@@ -38,7 +38,10 @@ export class StatsTab {
     this.memory = element('ul', { class: 'bars', 'aria-label': 'Memory' });
     this.rejects = element('dl', { class: 'info figures', 'aria-label': 'Clamped and left out' });
     const charts = element('div', {});
-    const section = (/** @type {string} */ title, /** @type {HTMLElement} */ content) => [element('h2', {}, title), content];
+    const section = (/** @type {string} */ title, /** @type {HTMLElement} */ content) => [
+      element('h2', {}, title),
+      content,
+    ];
     root.append(
       element('h2', {}, 'Bottleneck'),
       this.bottleneck,
@@ -124,7 +127,10 @@ export class StatsTab {
       passes.map((/** @type {any} */ pass) => ({ ...pass, value: pass.time_ms, off: !pass.ran })),
       times,
     );
-    const stages = Object.entries(stages_ms).map(([name, value]) => ({ name, value: Number(value) }));
+    const stages = Object.entries(stages_ms).map(([name, value]) => ({
+      name,
+      value: Number(value),
+    }));
     this.#drawBars(this.stages, [...stages, { name: 'decode', value: this.decodeMs }], times);
     this.#drawBars(
       this.memory,
@@ -155,7 +161,11 @@ export class StatsTab {
           ...(off
             ? [element('small', { class: 'reason' }, `skipped: ${reason || 'not needed'}`)]
             : [
-                element('span', { class: 'bar' }, element('span', { style: `width:${(100 * value) / most}%` })),
+                element(
+                  'span',
+                  { class: 'bar' },
+                  element('span', { style: `width:${(100 * value) / most}%` }),
+                ),
                 element('small', {}, format(value)),
               ]),
         ),

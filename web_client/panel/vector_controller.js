@@ -43,7 +43,9 @@ export class VectorController extends Controller {
     this.inputs.forEach((/** @type {HTMLInputElement} */ input, /** @type {number} */ i) => {
       if (document.activeElement === input && input.valueAsNumber === value[i]) return;
       const number = Number(value[i]);
-      const shown = String(Number(Math.abs(number) < 1 ? number.toFixed(4) : number.toPrecision(5)));
+      const shown = String(
+        Number(Math.abs(number) < 1 ? number.toFixed(4) : number.toPrecision(5)),
+      );
       if (input.value !== shown && document.activeElement !== input) input.value = shown;
     });
     return this;

@@ -18,7 +18,8 @@ const KEYS = [
 ];
 
 /**
- * Controls of other tabs: the stage decides the size, the accuracy tab the configuration, the render tab the quality.
+ * Controls of other tabs: the stage decides the size, the accuracy tab the configuration, the
+ * render tab the quality.
  */
 const ELSEWHERE = ['width', 'height', 'rung'];
 
@@ -28,7 +29,12 @@ export class ViewTab {
   constructor(root, app) {
     this.app = app;
     this.controls = element('div', {});
-    root.append(element('h2', {}, 'View'), this.controls, element('h2', {}, 'Keys'), this.#makeKeys());
+    root.append(
+      element('h2', {}, 'View'),
+      this.controls,
+      element('h2', {}, 'Keys'),
+      this.#makeKeys(),
+    );
     /** @type {{refresh: () => void}[]} */
     this.sections = [];
   }
@@ -39,10 +45,14 @@ export class ViewTab {
     const { view, camera } = app;
     this.controls.replaceChildren();
     const picture = makeSection(this.controls, 'Picture');
-    const sizes = Object.fromEntries(Object.keys(RENDER_SIZES).map((name) => [wordsOf(name), name]));
+    const sizes = Object.fromEntries(
+      Object.keys(RENDER_SIZES).map((name) => [wordsOf(name), name]),
+    );
     const size = picture.add(view, 'sizeChoice', sizes).name('Render size');
     size.onChange((/** @type {string} */ choice) => view.chooseSize(choice));
-    const rows = app.parameters('view').filter(({ name }) => !ELSEWHERE.includes(name) && !isRenderOption(name));
+    const rows = app
+      .parameters('view')
+      .filter(({ name }) => !ELSEWHERE.includes(name) && !isRenderOption(name));
     const options = addParameterControls(picture, rows, {
       get: (name) => view.options[name],
       set: (name, value) => view.configure({ [name]: value }),
@@ -63,7 +73,8 @@ export class ViewTab {
 
   #makeKeys() {
     const list = element('dl', { class: 'info keys' });
-    for (const [keys, meaning] of KEYS) list.append(element('dt', {}, keys), element('dd', {}, meaning));
+    for (const [keys, meaning] of KEYS)
+      list.append(element('dt', {}, keys), element('dd', {}, meaning));
     return list;
   }
 }

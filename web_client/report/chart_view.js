@@ -1,5 +1,6 @@
-// Draws the shapes of error_chart.js into an SVG element and makes its points reachable by mouse, touch and keyboard. A
-// plain script, as error_chart.js is; panel/error_chart.js names it for modules.
+// Draws the shapes of error_chart.js into an SVG element and makes its points reachable by mouse,
+// touch and keyboard. A plain script, as error_chart.js is; panel/error_chart.js names it for
+// modules.
 
 globalThis.ErrorChartView = class {
   #svg;
@@ -12,7 +13,8 @@ globalThis.ErrorChartView = class {
   /**
    * @param {SVGSVGElement} svg
    * @param {{ label: string, onShow: (point: any, mark: SVGElement) => void, onHide: () => void,
-   *   onChoose: (point: any) => void }} options onShow hears the point that is pointed at or has the focus
+   *   onChoose: (point: any) => void }} options onShow hears the point that is pointed at or has
+   *   the focus
    */
   constructor(svg, options) {
     this.#svg = svg;
@@ -22,7 +24,10 @@ globalThis.ErrorChartView = class {
   /** @param {any} params of shapesOf() */
   draw(params) {
     const focused = this.#svg.contains(document.activeElement) ? this.#current : '';
-    const group = this.#make(null, { tag: 'g', attributes: { role: 'listbox', 'aria-label': this.#options.label } });
+    const group = this.#make(null, {
+      tag: 'g',
+      attributes: { role: 'listbox', 'aria-label': this.#options.label },
+    });
     this.#svg.setAttribute('viewBox', `0 0 ${params.width} ${params.height}`);
     this.#svg.replaceChildren();
     this.#marks = [];
@@ -32,7 +37,8 @@ globalThis.ErrorChartView = class {
       else this.#make(this.#svg, shape).setAttribute('aria-hidden', 'true');
     }
     this.#marks.sort((a, b) => a.point.ms - b.point.ms);
-    const current = this.#marks.find(({ point }) => point.rung.name === this.#current) ?? this.#marks[0];
+    const current =
+      this.#marks.find(({ point }) => point.rung.name === this.#current) ?? this.#marks[0];
     if (current) this.#moveTo(current, focused !== '' && focused === current.point.rung.name);
   }
 
@@ -56,14 +62,16 @@ globalThis.ErrorChartView = class {
       this.#moveTo(entry, false);
       this.#options.onShow(point, mark);
     });
-    for (const event of ['pointerleave', 'blur']) mark.addEventListener(event, () => this.#options.onHide());
+    for (const event of ['pointerleave', 'blur'])
+      mark.addEventListener(event, () => this.#options.onHide());
     mark.addEventListener('click', () => this.#options.onChoose(point));
     mark.addEventListener('keydown', (event) => this.#key(event, entry));
     this.#marks.push(entry);
   }
 
   #moveTo(entry, takesFocus) {
-    for (const { mark } of this.#marks) mark.setAttribute('tabindex', mark === entry.mark ? '0' : '-1');
+    for (const { mark } of this.#marks)
+      mark.setAttribute('tabindex', mark === entry.mark ? '0' : '-1');
     this.#current = entry.point.rung.name;
     if (takesFocus) entry.mark.focus();
   }
@@ -78,7 +86,8 @@ globalThis.ErrorChartView = class {
       Home: 0,
       End: this.#marks.length - 1,
     }[event.key];
-    if (target !== undefined) this.#moveTo(this.#marks[Math.min(Math.max(target, 0), this.#marks.length - 1)], true);
+    if (target !== undefined)
+      this.#moveTo(this.#marks[Math.min(Math.max(target, 0), this.#marks.length - 1)], true);
     else if (event.key === 'Enter' || event.key === ' ') this.#options.onChoose(entry.point);
     else return;
     event.preventDefault();

@@ -1,14 +1,17 @@
-// Charts of error against time, for the page of an accuracy run, for the panel and for pages that node writes: time and
-// error of a configuration, the Pareto front, and the shapes that show them.
+// Charts of error against time, for the page of an accuracy run, for the panel and for pages that
+// node writes: time and error of a configuration, the Pareto front, and the shapes that show them.
 //
-// The page is opened from the disk, where it may load no modules. So this is a plain script that leaves everything in
-// globalThis.errorChart. panel/error_chart.js names it for modules.
+// The page is opened from the disk, where it may load no modules. So this is a plain script that
+// leaves everything in globalThis.errorChart. panel/error_chart.js names it for modules.
 
 /** @typedef {{ name: string, title: string, unit: string }} Metric */
 /** @typedef {{ metric: string, time: string, state: string, part: string }} Choice what is drawn */
 /** @typedef {{ ms: number, error: number, rung: any }} Point */
 /** @typedef {{ left: number, right: number, top: number, bottom: number }} Area */
-/** @typedef {{ tag: string, attributes: Record<string, string | number>, text?: string, point?: Point }} Shape */
+/**
+ * @typedef {{ tag: string, attributes: Record<string, string | number>, text?: string, point?:
+ *   Point }} Shape
+ */
 
 globalThis.errorChart = (() => {
   const COLORS = { none: '#8a8f99', clipmap: '#d9622b', grid: '#2b7fd9' };
@@ -20,8 +23,16 @@ globalThis.errorChart = (() => {
 
   /** The times of a configuration; `short` is for narrow charts. */
   const TIMES = {
-    frame: { title: 'median frame of a moving camera, ms', short: 'frame, ms', get: (rung) => rung.frame_ms.median },
-    cold: { title: 'first picture of a scene just loaded, ms', short: 'first picture, ms', get: (rung) => rung.cold.ms },
+    frame: {
+      title: 'median frame of a moving camera, ms',
+      short: 'frame, ms',
+      get: (rung) => rung.frame_ms.median,
+    },
+    cold: {
+      title: 'first picture of a scene just loaded, ms',
+      short: 'first picture, ms',
+      get: (rung) => rung.cold.ms,
+    },
     converged: {
       title: 'from the loaded scene to the final picture, ms',
       short: 'final picture, ms',
@@ -39,7 +50,10 @@ globalThis.errorChart = (() => {
 
   const colorOf = (method) => COLORS[method] ?? OTHER_COLOR;
 
-  /** The error that a metric's value stands for: 0 is perfect; null without a value. As in image_metric_error(). */
+  /**
+   * The error that a metric's value stands for: 0 is perfect; null without a value. As in
+   * image_metric_error().
+   */
   function errorOf(metric, value) {
     if (typeof value !== 'number') return null;
     if (metric.startsWith('energy_')) return Math.abs(value - 1);
@@ -60,7 +74,8 @@ globalThis.errorChart = (() => {
   const short = (value) => (typeof value === 'number' ? String(Number(value.toPrecision(3))) : '–');
 
   /** The value of a metric of a configuration, as its entry has it. @param {Choice} choice */
-  const valueOf = (rung, choice, metric = choice.metric) => rung[choice.state]?.[choice.part]?.[metric];
+  const valueOf = (rung, choice, metric = choice.metric) =>
+    rung[choice.state]?.[choice.part]?.[metric];
 
   /** @returns {Point[]} what can be drawn on logarithmic axes */
   function pointsOf(rungs, choice) {
@@ -97,7 +112,8 @@ globalThis.errorChart = (() => {
           const value = step * 10 ** decade;
           if (Math.log10(value) >= low && Math.log10(value) <= high) ticks.push(value);
         }
-      if (ticks.every((tick, i) => i === 0 || Math.abs(scale(tick) - scale(ticks[i - 1])) >= room)) return ticks;
+      if (ticks.every((tick, i) => i === 0 || Math.abs(scale(tick) - scale(ticks[i - 1])) >= room))
+        return ticks;
     }
     return [];
   }
@@ -118,16 +134,34 @@ globalThis.errorChart = (() => {
     const shapes = [];
     for (const tick of x.ticks) {
       const at = x.scale(tick);
-      shapes.push({ tag: 'line', attributes: { class: 'grid', x1: at, x2: at, y1: top, y2: bottom } });
-      shapes.push({ tag: 'text', attributes: { x: at, y: bottom + 16, 'text-anchor': 'middle' }, text: short(tick) });
+      shapes.push({
+        tag: 'line',
+        attributes: { class: 'grid', x1: at, x2: at, y1: top, y2: bottom },
+      });
+      shapes.push({
+        tag: 'text',
+        attributes: { x: at, y: bottom + 16, 'text-anchor': 'middle' },
+        text: short(tick),
+      });
     }
     for (const tick of y.ticks) {
       const at = y.scale(tick);
-      shapes.push({ tag: 'line', attributes: { class: 'grid', x1: left, x2: right, y1: at, y2: at } });
-      shapes.push({ tag: 'text', attributes: { x: left - 6, y: at + 4, 'text-anchor': 'end' }, text: short(tick) });
+      shapes.push({
+        tag: 'line',
+        attributes: { class: 'grid', x1: left, x2: right, y1: at, y2: at },
+      });
+      shapes.push({
+        tag: 'text',
+        attributes: { x: left - 6, y: at + 4, 'text-anchor': 'end' },
+        text: short(tick),
+      });
     }
     const middle = { x: (left + right) / 2, y: (top + bottom) / 2 };
-    shapes.push({ tag: 'text', attributes: { x: middle.x, y: bottom + 34, 'text-anchor': 'middle' }, text: titles.x });
+    shapes.push({
+      tag: 'text',
+      attributes: { x: middle.x, y: bottom + 34, 'text-anchor': 'middle' },
+      text: titles.x,
+    });
     const turned = { transform: `translate(12 ${middle.y}) rotate(-90)`, 'text-anchor': 'middle' };
     shapes.push({ tag: 'text', attributes: turned, text: titles.y });
     return shapes;
@@ -139,17 +173,24 @@ globalThis.errorChart = (() => {
     const shapes = [];
     const height = noise > 0 ? y.scale(noise) : NaN;
     if (height <= bottom && height >= top) {
-      shapes.push({ tag: 'line', attributes: { class: 'noise', x1: left, x2: right, y1: height, y2: height } });
+      shapes.push({
+        tag: 'line',
+        attributes: { class: 'noise', x1: left, x2: right, y1: height, y2: height },
+      });
       const at = { class: 'limit', x: right, y: height - 5, 'text-anchor': 'end' };
       shapes.push({ tag: 'text', attributes: at, text: 'noise of the reference image' });
     }
     const place = budgetMs > 0 ? x.scale(budgetMs) : NaN;
     if (place >= left && place <= right)
-      shapes.push({ tag: 'line', attributes: { class: 'budget', x1: place, x2: place, y1: top, y2: bottom } });
+      shapes.push({
+        tag: 'line',
+        attributes: { class: 'budget', x1: place, x2: place, y1: top, y2: bottom },
+      });
     return shapes;
   }
 
-  const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+  const meets = (a, b) =>
+    a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
   /** Where a name may stand beside a mark: the best position first. */
   function labelPlaces(text, cx, cy, area) {
@@ -160,7 +201,15 @@ globalThis.errorChart = (() => {
       sides.map((anchor) => {
         const x = cx + (anchor === 'end' ? -11 : 11);
         const left = anchor === 'end' ? x - width : x;
-        return { x, y: cy + rise, anchor, left, right: left + width, top: cy + rise - LETTER_HEIGHT, bottom: cy + rise };
+        return {
+          x,
+          y: cy + rise,
+          anchor,
+          left,
+          right: left + width,
+          top: cy + rise - LETTER_HEIGHT,
+          bottom: cy + rise,
+        };
       }),
     );
   }
@@ -169,17 +218,31 @@ globalThis.errorChart = (() => {
   function labelShapes(labelled, all, { x, y, area }) {
     const taken = all.map(({ ms, error }) => {
       const [cx, cy] = [x.scale(ms), y.scale(error)];
-      return { left: cx - MARK_RADIUS, right: cx + MARK_RADIUS, top: cy - MARK_RADIUS, bottom: cy + MARK_RADIUS };
+      return {
+        left: cx - MARK_RADIUS,
+        right: cx + MARK_RADIUS,
+        top: cy - MARK_RADIUS,
+        bottom: cy + MARK_RADIUS,
+      };
     });
     const shapes = [];
-    for (const { point, mustShow } of [...labelled].sort((a, b) => Number(b.mustShow) - Number(a.mustShow))) {
+    for (const { point, mustShow } of [...labelled].sort(
+      (a, b) => Number(b.mustShow) - Number(a.mustShow),
+    )) {
       const { name } = point.rung;
       const places = labelPlaces(name, x.scale(point.ms), y.scale(point.error), area);
-      const fits = ({ left, right, bottom }) => left >= area.left && right <= area.right && bottom <= area.bottom;
-      const place = places.find((one) => fits(one) && !taken.some((other) => meets(one, other))) ?? (mustShow ? places[0] : null);
+      const fits = ({ left, right, bottom }) =>
+        left >= area.left && right <= area.right && bottom <= area.bottom;
+      const place =
+        places.find((one) => fits(one) && !taken.some((other) => meets(one, other))) ??
+        (mustShow ? places[0] : null);
       if (!place) continue;
       taken.push(place);
-      shapes.push({ tag: 'text', attributes: { class: 'name', x: place.x, y: place.y, 'text-anchor': place.anchor }, text: name });
+      shapes.push({
+        tag: 'text',
+        attributes: { class: 'name', x: place.x, y: place.y, 'text-anchor': place.anchor },
+        text: name,
+      });
     }
     return shapes;
   }
@@ -200,17 +263,32 @@ globalThis.errorChart = (() => {
   /** Marks the live configuration, or the selected one. */
   const ringShape = (point, { x, y }, name) => ({
     tag: 'circle',
-    attributes: { class: `ring ${name}`, cx: x.scale(point.ms), cy: y.scale(point.error), r: MARK_RADIUS + 4 },
+    attributes: {
+      class: `ring ${name}`,
+      cx: x.scale(point.ms),
+      cy: y.scale(point.error),
+      r: MARK_RADIUS + 4,
+    },
   });
 
   /**
    * What the chart consists of, in the order of drawing.
-   * @param {{ results: any, choice: Choice, width: number, height: number, live?: string, chosen?: string,
-   *   budgetMs?: number, isNarrow?: boolean, labels?: 'front' | 'marked' }} params `live` and `chosen` are names
-   *   of configurations with a ring around them
+   * @param {{ results: any, choice: Choice, width: number, height: number, live?: string, chosen?:
+   *   string, budgetMs?: number, isNarrow?: boolean, labels?: 'front' | 'marked' }} params `live`
+   *   and `chosen` are names of configurations with a ring around them
    * @returns {Shape[]}
    */
-  function shapesOf({ results, choice, width, height, live, chosen, budgetMs = 0, isNarrow = false, labels = 'front' }) {
+  function shapesOf({
+    results,
+    choice,
+    width,
+    height,
+    live,
+    chosen,
+    budgetMs = 0,
+    isNarrow = false,
+    labels = 'front',
+  }) {
     const points = pointsOf(results.rungs, choice);
     if (points.length === 0) {
       const at = { x: width / 2, y: height / 2, 'text-anchor': 'middle' };
@@ -224,21 +302,34 @@ globalThis.errorChart = (() => {
       x: logScale(points.map(({ ms }) => ms), area.left, area.right, isNarrow ? 26 : 34),
       y: logScale(points.map(({ error }) => error), area.bottom, area.top, 20),
       area,
-      titles: { x: isNarrow ? time.short : time.title, y: isNarrow ? (metric?.title ?? '') : errorTitle(metric) },
+      titles: {
+        x: isNarrow ? time.short : time.title,
+        y: isNarrow ? (metric?.title ?? '') : errorTitle(metric),
+      },
     };
     const corners = front.map(({ ms, error }, i) => {
       const from = i > 0 ? `H${frame.x.scale(ms)}V` : `M${frame.x.scale(ms)} `;
       return from + frame.y.scale(error);
     });
     const noise = results.noise?.[choice.part]?.[choice.metric]?.reference ?? 0;
-    const shapes = [...axisShapes(frame), ...limitShapes(frame, noise, choice.time === 'frame' ? budgetMs : 0)];
+    const shapes = [
+      ...axisShapes(frame),
+      ...limitShapes(frame, noise, choice.time === 'frame' ? budgetMs : 0),
+    ];
     shapes.push({ tag: 'path', attributes: { class: 'front', d: corners.join('') } });
-    const ringOf = ({ rung: { name } }) => (name === chosen ? 'chosen' : name === live ? 'live' : '');
+    const ringOf = ({ rung: { name } }) =>
+      name === chosen ? 'chosen' : name === live ? 'live' : '';
     // Marked points are drawn on top of the rest.
     const ordered = [...points].sort((a, b) => Number(ringOf(a) !== '') - Number(ringOf(b) !== ''));
     for (const point of ordered)
-      shapes.push(pointShape(point, frame, { isLarge: front.includes(point), isLive: point.rung.name === live }));
-    for (const point of ordered) if (ringOf(point)) shapes.push(ringShape(point, frame, ringOf(point)));
+      shapes.push(
+        pointShape(point, frame, {
+          isLarge: front.includes(point),
+          isLive: point.rung.name === live,
+        }),
+      );
+    for (const point of ordered)
+      if (ringOf(point)) shapes.push(ringShape(point, frame, ringOf(point)));
     const labelled = points
       .filter((point) => ringOf(point) || (labels === 'front' && front.includes(point)))
       .map((point) => ({ point, mustShow: ringOf(point) !== '' }));
@@ -246,5 +337,19 @@ globalThis.errorChart = (() => {
     return shapes;
   }
 
-  return { TIMES, STATES, PARTS, FIRST_CHOICE, colorOf, errorOf, errorTitle, short, valueOf, pointsOf, frontOf, settingText, shapesOf };
+  return {
+    TIMES,
+    STATES,
+    PARTS,
+    FIRST_CHOICE,
+    colorOf,
+    errorOf,
+    errorTitle,
+    short,
+    valueOf,
+    pointsOf,
+    frontOf,
+    settingText,
+    shapesOf,
+  };
 })();

@@ -1,10 +1,21 @@
-// The page of an accuracy run: a chart of error against time, a table, and images, from what results.js has left in
-// globalThis.results. Opened from the disk, so it is no module and loads nothing.
+// The page of an accuracy run: a chart of error against time, a table, and images, from what
+// results.js has left in globalThis.results. Opened from the disk, so it is no module and loads
+// nothing.
 
 (() => {
   const { setup, metrics, rungs } = globalThis.results;
-  const { TIMES, STATES, PARTS, FIRST_CHOICE, colorOf, frontOf, pointsOf, settingText, short, valueOf } =
-    globalThis.errorChart;
+  const {
+    TIMES,
+    STATES,
+    PARTS,
+    FIRST_CHOICE,
+    colorOf,
+    frontOf,
+    pointsOf,
+    settingText,
+    short,
+    valueOf,
+  } = globalThis.errorChart;
   const SIZE = { width: 1000, height: 560 };
   const choice = { ...FIRST_CHOICE };
 
@@ -29,7 +40,8 @@
     // The chart may be drawn smaller than its own coordinates.
     const ratio = svg.clientWidth / SIZE.width;
     const [x, y] = ['cx', 'cy'].map((name) => Number(mark.getAttribute(name)));
-    tip.style.left = `${x > 600 ? Math.max(x * ratio - tip.offsetWidth - 15, 0) : x * ratio + 15}px`;
+    const left = x > 600 ? Math.max(x * ratio - tip.offsetWidth - 15, 0) : x * ratio + 15;
+    tip.style.left = `${left}px`;
     tip.style.top = `${Math.max(Math.min(y * ratio, svg.clientHeight - tip.offsetHeight), 0)}px`;
   }
 
@@ -50,8 +62,11 @@
   function describeOwnError() {
     const noise = globalThis.results.noise[choice.part]?.[choice.metric];
     document.getElementById('noise').textContent = noise
-      ? `By this measure the reference image itself errs by ${short(noise.reference)}; the smallest error of a final ` +
-        `picture is ${short(noise.smallest)}. ${noise.enough ? 'That is little enough.' : 'That is more than a tenth: it needs more samples.'}`
+      ? `By this measure the reference image itself errs by ${short(noise.reference)}; the ` +
+        `smallest error of a final picture is ${short(noise.smallest)}. ` +
+        (noise.enough
+          ? 'That is little enough.'
+          : 'That is more than a tenth: it needs more samples.')
       : 'The error of the reference image itself is not known.';
   }
 
@@ -65,7 +80,15 @@
     const table = document.getElementById('table');
     table.replaceChildren();
     const head = table.createTHead().insertRow();
-    for (const text of ['configuration', 'frame ms', 'first ms', 'final ms', 'edit ms', 'MiB', ...metrics.map(({ title }) => title)])
+    for (const text of [
+      'configuration',
+      'frame ms',
+      'first ms',
+      'final ms',
+      'edit ms',
+      'MiB',
+      ...metrics.map(({ title }) => title),
+    ])
       cell(head, text, 'th');
     const body = table.createTBody();
     const front = new Set(frontOf(pointsOf(rungs, choice)).map(({ rung }) => rung));
@@ -93,7 +116,8 @@
       picture.alt = `Reference image, first picture, final picture and error of ${rung.name}`;
       const passes = document.createElement('p');
       const times = Object.entries(rung.pass_ms ?? {}).sort(([, a], [, b]) => b - a);
-      passes.textContent = `Median ms of passes: ${times.map(([name, ms]) => `${name} ${short(ms)}`).join(', ')}.`;
+      const passTimes = times.map(([name, ms]) => `${name} ${short(ms)}`).join(', ');
+      passes.textContent = `Median ms of passes: ${passTimes}.`;
       strip.append(summary, picture, passes);
       place.append(strip);
     }
@@ -111,7 +135,8 @@
     wrapper.textContent = `${label} `;
     const select = document.createElement('select');
     select.name = field;
-    for (const [value, text] of options) select.append(new Option(text, value, false, value === choice[field]));
+    for (const [value, text] of options)
+      select.append(new Option(text, value, false, value === choice[field]));
     select.addEventListener('change', () => {
       choice[field] = select.value;
       draw();
@@ -123,7 +148,8 @@
   function describeNoise() {
     const { reference } = setup;
     if (typeof reference.noise !== 'number') return 'Its noise is not known.';
-    return `Its noise (standard error of pixels over the mean) is ${short(100 * reference.noise)} %.`;
+    const noise = short(100 * reference.noise);
+    return `Its noise (standard error of pixels over the mean) is ${noise} %.`;
   }
 
   function describeSetup() {
@@ -141,7 +167,11 @@
     legend.append('. Large: on the Pareto front.');
   }
 
-  addChoice('metric', 'error', metrics.filter(({ name }) => name !== 'not_finite').map(({ name, title }) => [name, title]));
+  addChoice(
+    'metric',
+    'error',
+    metrics.filter(({ name }) => name !== 'not_finite').map(({ name, title }) => [name, title]),
+  );
   addChoice('state', 'of the', Object.entries(STATES));
   if (setup.reference.direct) addChoice('part', 'of', Object.entries(PARTS));
   addChoice('time', 'against', Object.entries(TIMES).map(([name, { title }]) => [name, title]));

@@ -1,8 +1,8 @@
 const KEEP = 256;
 
 /**
- * Measures edit to photon: from the moment of an edit to the presentation of the first frame that shows it, by the edit
- * ids in the frames' headers.
+ * Measures edit to photon: from the moment of an edit to the presentation of the first frame that
+ * shows it, by the edit ids in the frames' headers.
  */
 export class EditTimer {
   constructor() {

@@ -3,7 +3,10 @@ import { RpcError } from '../net/rpc_error.js';
 const LONGEST_PHOTON_MS = 5000;
 
 /** @typedef {import('../net/connection.js').Connection} Connection */
-/** @typedef {{group: string, id: number | undefined, set: Record<string, any>, at: number | null}} Pending */
+/**
+ * @typedef {{group: string, id: number | undefined, set: Record<string, any>, at: number | null}}
+ *   Pending
+ */
 
 /**
  * Sends edits: what is dragged at most once per animation frame, marked transient, and what is
@@ -68,7 +71,10 @@ export class Editor {
     return this.#request('light.remove', { id });
   }
 
-  /** @param {string} name of scene.list; how long it loads says nothing of edits @returns {Promise<any>} */
+  /**
+   * @param {string} name of scene.list; how long it loads says nothing of edits
+   * @returns {Promise<any>}
+   */
   loadEnvironment(name) {
     return this.#request('environment.load', { name }, null);
   }

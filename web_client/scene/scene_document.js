@@ -13,8 +13,8 @@ const ARRAYS = /** @type {Record<string, string>} */ ({
 /**
  * The client's copy of the shared document.
  *
- * Events: `loaded` (another scene, or all of it anew), `structure` (lights or nodes were added or removed), `changed`
- * (detail: group and id of what has new values).
+ * Events: `loaded` (another scene, or all of it anew), `structure` (lights or nodes were added or
+ * removed), `changed` (detail: group and id of what has new values).
  */
 export class SceneDocument extends EventTarget {
   constructor() {
@@ -69,7 +69,10 @@ export class SceneDocument extends EventTarget {
     return node.parent === null ? local : multiply(this.worldFromNode(node.parent), local);
   }
 
-  /** The middle of the scene and the radius of a ball around it. @returns {{center: Vector, radius: number}} */
+  /**
+   * The middle of the scene and the radius of a ball around it.
+   * @returns {{center: Vector, radius: number}}
+   */
   get ball() {
     const bounds = this.data?.bounds;
     if (!bounds) return { center: [0, 0, 0], radius: 1 };
@@ -81,12 +84,21 @@ export class SceneDocument extends EventTarget {
     };
   }
 
-  #move(/** @type {string} */ group, /** @type {any} */ { id, ...set }, /** @type {any} */ isStale) {
+  #move(
+    /** @type {string} */ group,
+    /** @type {any} */ { id, ...set },
+    /** @type {any} */ isStale,
+  ) {
     this.assign(group, id, set, isStale);
   }
 
   #loadEnvironment(/** @type {any} */ { name, set }, /** @type {any} */ isStale) {
-    this.assign('environment', undefined, { ...set, image: name, has_picture: name !== null }, isStale);
+    this.assign(
+      'environment',
+      undefined,
+      { ...set, image: name, has_picture: name !== null },
+      isStale,
+    );
   }
 
   #add(/** @type {any} */ edit) {

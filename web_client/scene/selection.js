@@ -16,7 +16,10 @@ export class Selection extends EventTarget {
     this.anchorNode = null;
   }
 
-  /** @param {Partial<Pick<Selection, 'nodeId' | 'lightId' | 'materialId' | 'hit' | 'anchorNode'>>} choice */
+  /**
+   * @param {Partial<Pick<Selection, 'nodeId' | 'lightId' | 'materialId' | 'hit' | 'anchorNode'>>}
+   *   choice
+   */
   choose(choice) {
     this.nodeId = choice.nodeId ?? null;
     this.lightId = choice.lightId ?? null;

@@ -10,7 +10,8 @@ export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (name.startsWith('on')) made.addEventListener(name.slice(2), value);
-    else if (name.startsWith('aria-') && value !== undefined) made.setAttribute(name, String(value));
+    else if (name.startsWith('aria-') && value !== undefined)
+      made.setAttribute(name, String(value));
     else if (value === true) made.setAttribute(name, '');
     else if (value !== undefined && value !== false) made.setAttribute(name, String(value));
   }

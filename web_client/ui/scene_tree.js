@@ -4,20 +4,32 @@ import { icon } from './icon.js';
 const ROW_PX = 26;
 const SPARE_ROWS = 6;
 
-/** @typedef {{id: number, name: string, parent: number | null, mesh: number | null, light: number | null, camera: number | null, visible: boolean}} Node */
-/** @typedef {{node: Node, level: number, hasChildren: boolean, place: number, siblings: number}} Row */
+/**
+ * @typedef {{id: number, name: string, parent: number | null, mesh: number | null, light: number |
+ *   null, camera: number | null, visible: boolean}} Node
+ */
+/**
+ * @typedef {{node: Node, level: number, hasChildren: boolean, place: number, siblings: number}} Row
+ */
 
 const kindOf = (/** @type {Node} */ node) =>
-  node.light !== null ? 'light' : node.camera !== null ? 'camera' : node.mesh !== null ? 'mesh' : 'group';
+  node.light !== null
+    ? 'light'
+    : node.camera !== null
+      ? 'camera'
+      : node.mesh !== null
+        ? 'mesh'
+        : 'group';
 
 /**
- * The nodes as an ARIA tree. Only visible rows are in the page, so that thousands of nodes cost little. The focus stays
- * on the tree; arrow keys move the selection, V shows and hides.
+ * The nodes as an ARIA tree. Only visible rows are in the page, so that thousands of nodes cost
+ * little. The focus stays on the tree; arrow keys move the selection, V shows and hides.
  */
 export class SceneTree {
   /**
    * @param {HTMLElement} container
-   * @param {{onChoose: (nodeId: number) => void, onShow: (nodeId: number, visible: boolean) => void}} options
+   * @param {{onChoose: (nodeId: number) => void, onShow: (nodeId: number, visible: boolean) =>
+   *   void}} options
    */
   constructor(container, options) {
     this.container = container;
@@ -79,7 +91,8 @@ export class SceneTree {
     const top = this.rows.findIndex((row) => row.node.id === nodeId) * ROW_PX;
     const { scrollTop, clientHeight } = this.container;
     if (top < scrollTop) this.container.scrollTop = top;
-    if (top + ROW_PX > scrollTop + clientHeight) this.container.scrollTop = top + ROW_PX - clientHeight;
+    if (top + ROW_PX > scrollTop + clientHeight)
+      this.container.scrollTop = top + ROW_PX - clientHeight;
   }
 
   #draw() {
@@ -92,7 +105,10 @@ export class SceneTree {
     else this.container.removeAttribute('aria-activedescendant');
   }
 
-  #makeRow(/** @type {Row} */ { node, level, hasChildren, place, siblings }, /** @type {number} */ index) {
+  #makeRow(
+    /** @type {Row} */ { node, level, hasChildren, place, siblings },
+    /** @type {number} */ index,
+  ) {
     const isOpen = !this.closed.has(node.id);
     const name = node.name || `node ${node.id}`;
     const twisty = element('span', { class: 'twisty', 'aria-hidden': 'true' });

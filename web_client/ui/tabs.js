@@ -18,7 +18,9 @@ export function bindTabs(list, onShow) {
   for (const tab of tabs) tab.addEventListener('click', () => show(tab));
   list.addEventListener('keydown', (event) => {
     const at = tabs.indexOf(/** @type {HTMLElement} */ (document.activeElement));
-    const next = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: tabs.length - 1 }[event.key];
+    const next = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: tabs.length - 1 }[
+      event.key
+    ];
     if (next === undefined || at < 0) return;
     event.preventDefault();
     const tab = tabs[(next + tabs.length) % tabs.length];

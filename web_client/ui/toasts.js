@@ -16,7 +16,12 @@ export class Toasts {
     const toast = element(
       'div',
       { class: `toast ${level}` },
-      element('div', {}, element('p', {}, message), ...(detail ? [element('small', {}, detail)] : [])),
+      element(
+        'div',
+        {},
+        element('p', {}, message),
+        ...(detail ? [element('small', {}, detail)] : []),
+      ),
       close,
     );
     close.addEventListener('click', () => toast.remove());

@@ -6,7 +6,10 @@ import { cameraAxes } from '../math/projection.js';
 const STEEPEST_RAD = (89.5 / 180) * Math.PI;
 const WORLD_UP = /** @type {Vector} */ ([0, 1, 0]);
 
-/** The client's camera: its pose, and how input moves it. Rotating it levels it: up becomes +Y. Event: `changed`. */
+/**
+ * The client's camera: its pose, and how input moves it. Rotating it levels it: up becomes +Y.
+ * Event: `changed`.
+ */
 export class Camera extends EventTarget {
   constructor() {
     super();

@@ -30,9 +30,9 @@ export class CameraInput {
   /**
    * @param {HTMLElement} stage
    * @param {import('./camera.js').Camera} camera
-   * @param {{getMode: () => 'orbit' | 'fly', getSpeed: () => number,
-   *   onClick: (x: number, y: number) => void}} options speed in metres a second; a click's position is
-   *   in pixels of the stage
+   * @param {{getMode: () => 'orbit' | 'fly', getSpeed: () => number, onClick: (x: number, y:
+   *   number) => void}} options speed in metres a second; a click's position is in pixels of the
+   *   stage
    */
   constructor(stage, camera, options) {
     this.stage = stage;
@@ -138,7 +138,8 @@ export class CameraInput {
       const walk = WALK_KEYS[code];
       const turning = TURN_KEYS[code];
       if (walk) this.camera.move([walk[0] * step, walk[1] * step, walk[2] * step]);
-      else if (this.options.getMode() === 'fly') this.camera.look(turning[0] * turn, turning[1] * turn);
+      else if (this.options.getMode() === 'fly')
+        this.camera.look(turning[0] * turn, turning[1] * turn);
       else this.camera.orbit(turning[0] * turn, turning[1] * turn);
     }
     requestAnimationFrame(() => this.#tick());

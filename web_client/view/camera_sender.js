@@ -1,8 +1,8 @@
 const KEEP = 512;
 
 /**
- * Sends the camera to the server, at most once per animation frame, and remembers the poses, so that what is drawn over
- * an image can use the camera that the image was drawn with.
+ * Sends the camera to the server, at most once per animation frame, and remembers the poses, so
+ * that what is drawn over an image can use the camera that the image was drawn with.
  */
 export class CameraSender {
   /**

@@ -19,8 +19,8 @@ const OBSTACLES = {
  */
 
 /**
- * Lies over the image: the reference image to the right of a movable line, or an error map with its scale. Where they
- * do not fit it says so. Event: `return`, to go back to the measured view.
+ * Lies over the image: the reference image to the right of a movable line, or an error map with its
+ * scale. Where they do not fit it says so. Event: `return`, to go back to the measured view.
  */
 export class Comparison extends EventTarget {
   /**
@@ -39,7 +39,11 @@ export class Comparison extends EventTarget {
     this.divider = this.#makeDivider();
     this.legend = makeLegend();
     this.hint = element('span', {});
-    this.goBack = element('button', { type: 'button', onclick: () => this.dispatchEvent(new Event('return')) }, 'Back to the measured view');
+    this.goBack = element(
+      'button',
+      { type: 'button', onclick: () => this.dispatchEvent(new Event('return')) },
+      'Back to the measured view',
+    );
     this.obstacle = element('div', { class: 'stage-hint', role: 'status' }, this.hint, this.goBack);
     controls.append(this.divider, this.legend, this.obstacle);
     this.#move(this.share);
@@ -65,7 +69,15 @@ export class Comparison extends EventTarget {
   #makeDivider() {
     const divider = element(
       'div',
-      { class: 'divider', role: 'slider', tabindex: 0, 'aria-label': 'Line between live picture and reference image', 'aria-valuemin': 0, 'aria-valuemax': 100, 'aria-orientation': 'horizontal' },
+      {
+        class: 'divider',
+        role: 'slider',
+        tabindex: 0,
+        'aria-label': 'Line between live picture and reference image',
+        'aria-valuemin': 0,
+        'aria-valuemax': 100,
+        'aria-orientation': 'horizontal',
+      },
       element('span', { class: 'side live', 'aria-hidden': 'true' }, 'live'),
       element('span', { class: 'side truth', 'aria-hidden': 'true' }, 'reference'),
       element('span', { class: 'knob', 'aria-hidden': 'true' }, '‹ ›'),
@@ -118,6 +130,22 @@ function setSource(/** @type {HTMLImageElement} */ picture, /** @type {string} *
 /** The scale of the error map. */
 function makeLegend() {
   const scale = element('span', { class: 'scale', style: `background:${heatMapGradient()}` });
-  const ends = element('span', { class: 'ends' }, ...['0', '0.5', '1'].map((text) => element('span', {}, text)));
-  return element('div', { class: 'heat-legend', role: 'img', 'aria-label': 'Scale of the error map: LDR-FLIP from 0, black, by violet, red and orange to 1, pale yellow' }, element('span', {}, 'LDR-FLIP: 0 as the reference image, 1 as wrong as can be'), scale, ends);
+  const ends = element(
+    'span',
+    { class: 'ends' },
+    ...['0', '0.5', '1'].map((text) => element('span', {}, text)),
+  );
+  return element(
+    'div',
+    {
+      class: 'heat-legend',
+      role: 'img',
+      'aria-label':
+        'Scale of the error map: LDR-FLIP from 0, black, by violet, red and orange to 1, ' +
+        'pale yellow',
+    },
+    element('span', {}, 'LDR-FLIP: 0 as the reference image, 1 as wrong as can be'),
+    scale,
+    ends,
+  );
 }

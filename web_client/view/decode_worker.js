@@ -1,5 +1,5 @@
-// Decodes JPEGs off the main thread: receives {id, jpeg}, sends {id, bitmap}; bitmap is null if the JPEG is broken. The
-// receiver owns the bitmap.
+// Decodes JPEGs off the main thread: receives {id, jpeg}, sends {id, bitmap}; bitmap is null if the
+// JPEG is broken. The receiver owns the bitmap.
 self.onmessage = async (event) => {
   const { id, jpeg } = event.data;
   try {

@@ -1,4 +1,10 @@
-import { closestOnAxis, cameraAxes, meetPlane, projectPoint, rayThrough } from '../math/projection.js';
+import {
+  closestOnAxis,
+  cameraAxes,
+  meetPlane,
+  projectPoint,
+  rayThrough,
+} from '../math/projection.js';
 import { add, scale, subtract } from '../math/vector.js';
 
 /** @typedef {import('../math/vector.js').Vector} Vector */
@@ -21,10 +27,12 @@ function element(tag, attributes) {
 }
 
 /**
- * Draws over the image: an icon for each light and, at the selected thing, a handle with three axes and a square that
- * moves in the plane of the screen. Everything follows the camera of the shown image.
+ * Draws over the image: an icon for each light and, at the selected thing, a handle with three axes
+ * and a square that moves in the plane of the screen. Everything follows the camera of the shown
+ * image.
  *
- * Events: `light` (detail: id of a clicked light), `drag` (detail: the handle's new world position, and `isLast`).
+ * Events: `light` (detail: id of a clicked light), `drag` (detail: the handle's new world position,
+ * and `isLast`).
  */
 export class Overlay extends EventTarget {
   /** @param {SVGSVGElement} svg */
@@ -37,7 +45,10 @@ export class Overlay extends EventTarget {
     this.pose = null;
     /** Aspect of the shown image, which is stretched slightly to fill the stage. */
     this.aspect = 16 / 9;
-    /** @type {{id: number, name: string, type: string, enabled: boolean, color: number[], position: Vector}[]} */
+    /**
+     * @type {{id: number, name: string, type: string, enabled: boolean, color: number[], position:
+     *   Vector}[]}
+     */
     this.lights = [];
     /** @type {number | null} */
     this.chosenLight = null;
@@ -60,7 +71,11 @@ export class Overlay extends EventTarget {
   #place(/** @type {Vector} */ point) {
     const place = this.pose && projectPoint(this.pose, this.aspect, point);
     if (!place) return null;
-    return { x: place.x * this.svg.clientWidth, y: place.y * this.svg.clientHeight, depth: place.depth };
+    return {
+      x: place.x * this.svg.clientWidth,
+      y: place.y * this.svg.clientHeight,
+      depth: place.depth,
+    };
   }
 
   #drawLights() {
@@ -86,12 +101,19 @@ export class Overlay extends EventTarget {
   }
 
   #makeLight(/** @type {number} */ id) {
-    const icon = /** @type {SVGElement} */ (element('g', { class: 'light-icon', role: 'button', tabindex: 0 }));
+    const icon = /** @type {SVGElement} */ (
+      element('g', { class: 'light-icon', role: 'button', tabindex: 0 })
+    );
     icon.append(
       element('circle', { class: 'hit', r: 16 }),
       element('circle', { class: 'disc', r: 10 }),
       element('circle', { class: 'bulb', r: 3.5 }),
-      element('path', { class: 'rays', d: 'M0-8v2M0 6v2M-8 0h2M6 0h2M-5.6-5.6l1.4 1.4M4.2 4.2l1.4 1.4M-5.6 5.6l1.4-1.4M4.2-4.2l1.4-1.4' }),
+      element('path', {
+        class: 'rays',
+        d:
+          'M0-8v2M0 6v2M-8 0h2M6 0h2M-5.6-5.6l1.4 1.4M4.2 4.2l1.4 1.4' +
+          'M-5.6 5.6l1.4-1.4M4.2-4.2l1.4-1.4',
+      }),
     );
     const choose = () => this.dispatchEvent(new CustomEvent('light', { detail: id }));
     icon.addEventListener('pointerdown', (event) => {
@@ -116,7 +138,8 @@ export class Overlay extends EventTarget {
       const tip = element('circle', { class: 'tip', r: 6 });
       group.append(hit, line, tip);
       group.addEventListener('pointerdown', (event) => {
-        if (this.handle) this.#startDrag(/** @type {PointerEvent} */ (event), direction, this.handle);
+        if (this.handle)
+          this.#startDrag(/** @type {PointerEvent} */ (event), direction, this.handle);
       });
       this.handleLayer.append(group);
       return { direction, group, hit, line, tip };
@@ -167,13 +190,21 @@ export class Overlay extends EventTarget {
   }
 
   /** The dragged position: along the axis, or in the plane that faces the eye. */
-  #grab(/** @type {PointerEvent} */ event, /** @type {Vector | null} */ axis, /** @type {Vector} */ from) {
+  #grab(
+    /** @type {PointerEvent} */ event,
+    /** @type {Vector | null} */ axis,
+    /** @type {Vector} */ from,
+  ) {
     const ray = this.#rayOf(event);
     if (axis) return closestOnAxis(ray, from, axis);
     return meetPlane(ray, from, cameraAxes(/** @type {CameraPose} */ (this.pose)).forward);
   }
 
-  #startDrag(/** @type {PointerEvent} */ event, /** @type {Vector | null} */ axis, /** @type {Vector} */ from) {
+  #startDrag(
+    /** @type {PointerEvent} */ event,
+    /** @type {Vector | null} */ axis,
+    /** @type {Vector} */ from,
+  ) {
     if (event.button !== 0 || !this.pose) return;
     event.stopPropagation();
     event.preventDefault();
@@ -183,7 +214,8 @@ export class Overlay extends EventTarget {
     this.hasMoved = false;
     const target = /** @type {SVGElement} */ (event.currentTarget);
     target.setPointerCapture(event.pointerId);
-    const move = (/** @type {Event} */ moved) => this.#drag(/** @type {PointerEvent} */ (moved), false);
+    const move = (/** @type {Event} */ moved) =>
+      this.#drag(/** @type {PointerEvent} */ (moved), false);
     const end = (/** @type {Event} */ ended) => {
       target.removeEventListener('pointermove', move);
       if (this.hasMoved) this.#drag(/** @type {PointerEvent} */ (ended), true);

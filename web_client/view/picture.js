@@ -4,11 +4,11 @@
 const MAX_DECODES = 2;
 
 /**
- * Shows frames on a canvas. Decodes in a worker, at most two at a time; of the frames that wait, only the newest is
- * kept.
+ * Shows frames on a canvas. Decodes in a worker, at most two at a time; of the frames that wait,
+ * only the newest is kept.
  *
- * Events: `presented` (detail: the header and, as `decodeMs`, the time from arrival to canvas) and `skipped` (detail:
- * the header of a frame that is broken or came late).
+ * Events: `presented` (detail: the header and, as `decodeMs`, the time from arrival to canvas) and
+ * `skipped` (detail: the header of a frame that is broken or came late).
  */
 export class Picture extends EventTarget {
   /** @param {HTMLCanvasElement} canvas */

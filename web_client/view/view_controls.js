@@ -3,9 +3,9 @@ import { chooseViewSize } from './view_size.js';
 const SETTLE_MS = 150;
 
 /**
- * This client's view: its size follows the stage, its options follow the panel, and it pauses while the page is hidden.
- * A measured configuration may draw it instead of the shared settings. Events: `changed`, when options have changed,
- * and `rung`, when the configuration has.
+ * This client's view: its size follows the stage, its options follow the panel, and it pauses while
+ * the page is hidden. A measured configuration may draw it instead of the shared settings. Events:
+ * `changed`, when options have changed, and `rung`, when the configuration has.
  */
 export class ViewControls extends EventTarget {
   /**
@@ -42,20 +42,26 @@ export class ViewControls extends EventTarget {
       maxWidth: hello.limits.width,
       maxHeight: hello.limits.height,
     };
-    // Measurements belong to a connection: at its start no configuration is chosen, and sizes do not change the choice.
+    // Measurements belong to a connection: at its start no configuration is chosen, and sizes do
+    // not change the choice.
     const { width: _width, height: _height, rung: _rung, ...options } = hello.view;
     this.options = { ...options, ...this.options };
     this.#setRung('');
     this.send();
   }
 
-  /** Draws this view with a configuration of this client's newest measurement. @param {string} rung its name, or "" */
+  /**
+   * Draws this view with a configuration of this client's newest measurement.
+   * @param {string} rung its name, or ""
+   */
   async chooseRung(rung) {
     await this.connection.call('view.configure', { rung });
     this.#setRung(rung);
   }
 
-  /** The server has gone back to the shared settings, as it does for another scene or measurement. */
+  /**
+   * The server has gone back to the shared settings, as it does for another scene or measurement.
+   */
   forgetRung() {
     this.#setRung('');
   }
@@ -91,7 +97,8 @@ export class ViewControls extends EventTarget {
   }
 
   send() {
-    if (!this.connection.isOpen || this.stage.clientWidth < 2 || this.stage.clientHeight < 2) return;
+    if (!this.connection.isOpen || this.stage.clientWidth < 2 || this.stage.clientHeight < 2)
+      return;
     const paused = this.options.paused || document.hidden;
     this.connection
       .call('view.configure', { ...this.options, ...this.size, paused })

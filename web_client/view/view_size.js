@@ -1,4 +1,7 @@
-/** The choices of render size: the maximum of pixels, as width times height; auto depends on the server. */
+/**
+ * The choices of render size: the maximum of pixels, as width times height; auto depends on the
+ * server.
+ */
 export const RENDER_SIZES = /** @type {Record<string, [number, number] | null>} */ ({
   auto: null,
   '640 × 360': [640, 360],
