@@ -126,9 +126,9 @@ export class App {
   /** Moves the camera to see the selected thing, or the scene. */
   frameSelection() {
     const { center, radius } = this.document.ball;
-    const place = this.#handlePlace();
+    const position = this.#handlePosition();
     const aspect = this.overlay.aspect;
-    if (place) this.camera.frame(place, radius * 0.4, aspect);
+    if (position) this.camera.frame(position, radius * 0.4, aspect);
     else this.camera.frame(center, radius, aspect);
   }
 
@@ -232,7 +232,7 @@ export class App {
   #forgetMeasurement() {
     if (this.measurement.isRunning) this.measurement.cancel().catch(() => {});
     this.measurement.forget();
-    this.view.forgetRung();
+    this.view.forgetConfiguration();
   }
 
   #applyEdits(/** @type {any} */ params) {
@@ -351,7 +351,7 @@ export class App {
     const rows = this.parameters('view').find(
       (/** @type {any} */ row) => row.name === 'quality',
     )?.values;
-    this.badge.show(header, this.view.rung || (rows?.[header.quality] ?? ''));
+    this.badge.show(header, this.view.configuration || (rows?.[header.quality] ?? ''));
     this.overlay.pose = this.sender.poseOf(header.cameraRevision);
     this.overlay.aspect = header.width / header.height;
     this.overlay.draw();
@@ -401,7 +401,7 @@ export class App {
   }
 
   /** Where the handle is: at the light, where the object was clicked, or at its origin. */
-  #handlePlace() {
+  #handlePosition() {
     const { lightId, nodeId, anchorNode } = this.selection;
     const light = this.document.find('light', lightId ?? undefined);
     if (light) return /** @type {Vector} */ (light.position);
@@ -413,7 +413,7 @@ export class App {
     this.darkHint.refresh();
     this.overlay.lights = this.document.data?.lights ?? [];
     this.overlay.chosenLight = this.selection.lightId;
-    this.overlay.handle = this.#handlePlace();
+    this.overlay.handle = this.#handlePosition();
     this.overlay.draw();
   }
 

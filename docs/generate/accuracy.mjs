@@ -90,8 +90,8 @@ function measure(scene, source, options, folder) {
   mkdirSync(folder, { recursive: true });
   process.stderr.write(`accuracy: ${scene.name}\n`);
   const { size, noise, samples, ladder, frames } = options;
-  const truth = scene.hasCaustics ? ['--reference-spp', samples] : ['--until-noise', noise];
-  const chosen = ['--size', size, ...truth, '--ladder', ladder, '--frames', frames];
+  const reference = scene.hasCaustics ? ['--reference-spp', samples] : ['--until-noise', noise];
+  const chosen = ['--size', size, ...reference, '--ladder', ladder, '--frames', frames];
   const program = process.env.VOXCAST ?? join(ROOT, 'build/release/bin/voxcast');
   const { status, error } = spawnSync(program, ['accuracy', source, '--out', folder, ...chosen], {
     stdio: 'inherit',

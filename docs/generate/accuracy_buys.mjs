@@ -39,7 +39,8 @@ const fractionOf = (after, before) => (before > 0 && after > 0 ? after / before 
 
 /** How much more (1: twice, -0.5: half) each thing is after a step. */
 function changesOf(before, after) {
-  const error = (rung, part) => errorOf('ldr_flip', rung.converged?.[part]?.ldr_flip);
+  const error = (configuration, part) =>
+    errorOf('ldr_flip', configuration.converged?.[part]?.ldr_flip);
   return {
     error: fractionOf(error(after, 'metrics'), error(before, 'metrics')),
     indirect: fractionOf(error(after, 'indirect'), error(before, 'indirect')),
@@ -50,16 +51,18 @@ function changesOf(before, after) {
 }
 
 /**
- * @param {any[]} rungs the configurations of one run
+ * @param {any[]} configurations the configurations of one run
  * @returns {{ key: string, from: string, to: string, changes: any }[]} one for each pair of
  *   configurations
  */
-export function stepsOf(rungs) {
-  const byFacts = new Map(rungs.map((rung) => [keyOf(factsOf(rung)), rung]));
+export function stepsOf(configurations) {
+  const byFacts = new Map(
+    configurations.map((configuration) => [keyOf(factsOf(configuration)), configuration]),
+  );
   const steps = [];
   for (const [key, { values, isDefault }] of Object.entries(STEPS))
-    for (const rung of rungs) {
-      const { [key]: value = null, ...others } = factsOf(rung);
+    for (const configuration of configurations) {
+      const { [key]: value = null, ...others } = factsOf(configuration);
       const at = values.indexOf(value);
       const withValue = (other) =>
         byFacts.get(keyOf(other === null ? others : { ...others, [key]: other }));
@@ -69,7 +72,7 @@ export function stepsOf(rungs) {
         key,
         from: value ?? isDefault,
         to: next ?? isDefault,
-        changes: changesOf(rung, withValue(next)),
+        changes: changesOf(configuration, withValue(next)),
       });
     }
   return steps;

@@ -16,10 +16,10 @@ export function errorsOf({ rgb, width, height }) {
   const known = new Map();
   const nearest = (r, g, b) => {
     let best = 0;
-    let least = Infinity;
+    let minDistance = Infinity;
     colors.forEach(([x, y, z], i) => {
       const distance = (x - r) ** 2 + (y - g) ** 2 + (z - b) ** 2;
-      if (distance < least) [best, least] = [i, distance];
+      if (distance < minDistance) [best, minDistance] = [i, distance];
     });
     return best / 255;
   };

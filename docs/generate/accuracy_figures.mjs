@@ -11,7 +11,7 @@ const DIGITS = 4;
 const rounded = (value, digits = DIGITS) =>
   Number.isFinite(value) ? Number(value.toPrecision(digits)) : null;
 
-function rungFigures({ name, settings, frame_ms, converged }) {
+function configurationFigures({ name, settings, frame_ms, converged }) {
   const { preset, scale, set } = settings;
   return {
     name,
@@ -40,7 +40,7 @@ export function sceneFigures({ scene, results }) {
       noise: rounded(results.setup.reference.noise),
       ldr_flip: rounded(results.noise?.metrics?.ldr_flip?.reference),
     },
-    rungs: results.rungs.map(rungFigures).sort((a, b) => (a.name < b.name ? -1 : 1)),
+    rungs: results.rungs.map(configurationFigures).sort((a, b) => (a.name < b.name ? -1 : 1)),
   };
 }
 
@@ -82,8 +82,8 @@ export const figuresOf = (runs, machine) => ({
 export function figuresText({ machine, quality, scenes }) {
   const line = (value) => JSON.stringify(value);
   const rows = Object.entries(quality).map(([preset, row]) => `    ${line(preset)}: ${line(row)}`);
-  const blocks = scenes.map(({ rungs, ...facts }) => {
-    const lines = rungs.map((rung) => `      ${line(rung)}`).join(',\n');
+  const blocks = scenes.map(({ rungs: configurations, ...facts }) => {
+    const lines = configurations.map((configuration) => `      ${line(configuration)}`).join(',\n');
     return `    {${line(facts).slice(1, -1)}, "rungs": [\n${lines}\n    ]}`;
   });
   return [

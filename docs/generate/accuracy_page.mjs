@@ -24,15 +24,18 @@ const table = (head, rows) =>
     ...rows.map((row) => `| ${row.join(' | ')} |`),
   ].join('\n');
 
-const rungOf = ({ results }, name) => results.rungs.find((rung) => rung.name === name);
+const configurationOf = ({ results }, name) =>
+  results.rungs.find((configuration) => configuration.name === name);
 
 /**
  * The configuration whose errors are looked into: the best preset, or whatever is there that errs
  * least.
  */
-function bestRung(run) {
-  const flip = (rung) => rung.converged?.metrics?.ldr_flip ?? Infinity;
-  return rungOf(run, 'final') ?? [...run.results.rungs].sort((a, b) => flip(a) - flip(b))[0];
+function bestConfiguration(run) {
+  const flip = (configuration) => configuration.converged?.metrics?.ldr_flip ?? Infinity;
+  return (
+    configurationOf(run, 'final') ?? [...run.results.rungs].sort((a, b) => flip(a) - flip(b))[0]
+  );
 }
 
 /**
@@ -50,20 +53,21 @@ const energies = (results, part, values) =>
     .map((color) => figure(results, part, `energy_${color}`, values?.[`energy_${color}`]))
     .join(' ');
 
-/** @param {Run} run @param {any} rung */
-function rungRow({ results }, rung, front) {
-  const { metrics, indirect } = rung.converged;
+/** @param {Run} run @param {any} configuration */
+function configurationRow({ results }, configuration, front) {
+  const { converged } = configuration;
+  const { metrics, indirect } = converged;
   return [
-    `${front.has(rung) ? `**${rung.name}**` : rung.name}`,
-    short(rung.frame_ms.median),
-    `${short(rung.converged.ms)}${rung.converged.settled ? '' : ' (not settled)'}`,
-    short(rung.memory_bytes / 1048576),
+    `${front.has(configuration) ? `**${configuration.name}**` : configuration.name}`,
+    short(configuration.frame_ms.median),
+    `${short(converged.ms)}${converged.settled ? '' : ' (not settled)'}`,
+    short(configuration.memory_bytes / 1048576),
     figure(results, 'metrics', 'ldr_flip', metrics.ldr_flip),
     figure(results, 'metrics', 'ssim', metrics.ssim),
     figure(results, 'metrics', 'rel_mse', metrics.rel_mse),
     energies(results, 'metrics', metrics),
     energies(results, 'indirect', indirect),
-    front.has(rung) ? 'yes' : '',
+    front.has(configuration) ? 'yes' : '',
   ];
 }
 
@@ -81,14 +85,23 @@ const ROW_HEAD = [
 ];
 
 /** The presets and the front, and all the rest folded away. */
-function rungTables(run) {
-  const front = new Set(frontOf(pointsOf(run.results.rungs, FIRST_CHOICE)).map(({ rung }) => rung));
+function configurationTables(run) {
+  const front = new Set(
+    frontOf(pointsOf(run.results.rungs, FIRST_CHOICE)).map(({ configuration }) => configuration),
+  );
   const sorted = [...run.results.rungs].sort((a, b) => a.frame_ms.median - b.frame_ms.median);
-  const isShown = (rung) => front.has(rung) || PRESETS.includes(rung.name);
-  const rows = (list) => table(ROW_HEAD, list.map((rung) => rungRow(run, rung, front)));
+  const isShown = (configuration) =>
+    front.has(configuration) || PRESETS.includes(configuration.name);
+  const rows = (list) =>
+    table(
+      ROW_HEAD,
+      list.map((configuration) => configurationRow(run, configuration, front)),
+    );
   const parts = [rows(sorted.filter(isShown))];
-  const others = sorted.filter((rung) => !isShown(rung));
-  const meanings = sorted.map((rung) => `- \`${rung.name}\`: ${settingText(rung)}`).join('\n');
+  const others = sorted.filter((configuration) => !isShown(configuration));
+  const meanings = sorted
+    .map((configuration) => `- \`${configuration.name}\`: ${settingText(configuration)}`)
+    .join('\n');
   if (others.length > 0)
     parts.push(
       `<details><summary>${others.length} more</summary>\n\n${rows(others)}\n\n</details>`,
@@ -128,25 +141,25 @@ function noiseText({ results }) {
 /** Writes the images of a scene; returns the Markdown that shows them. */
 function scenePictures(run, folder) {
   const { scene, results } = run;
-  const best = bestRung(run);
-  const cheap = rungOf(run, 'interactive') ?? best;
+  const best = bestConfiguration(run);
+  const cheap = configurationOf(run, 'interactive') ?? best;
   const read = (file) => readPng(join(run.folder, file));
-  const [truth, picture, map] = [
+  const [reference, picture, map] = [
     read('reference.png'),
     read(best.pictures.converged),
     read(best.pictures.error),
   ];
-  const small = [truth, read(cheap.pictures.converged), picture, map].map((one) =>
+  const small = [reference, read(cheap.pictures.converged), picture, map].map((one) =>
     resized(one, OVERVIEW_WIDTH),
   );
   writePng(join(folder, `${scene.name}.png`), tiled([small.slice(0, 2), small.slice(2)]));
   const windows = worstWindows(map);
   const crops = windows.map((window) =>
-    [truth, picture, map].map((one) => resized(cropped(one, window), WINDOW_WIDTH)),
+    [reference, picture, map].map((one) => resized(cropped(one, window), WINDOW_WIDTH)),
   );
   writePng(join(folder, `${scene.name}-errors.png`), tiled(crops));
   writeFileSync(join(folder, `${scene.name}.svg`), chartSvg(results, FIRST_CHOICE));
-  const places = windows.map(
+  const errors = windows.map(
     ({ x, y, width, height, error }) =>
       `LDR-FLIP ${short(error)} around (${x + (width >> 1)}, ${y + (height >> 1)})`,
   );
@@ -158,7 +171,7 @@ function scenePictures(run, folder) {
     `![The largest errors: reference image, ${best.name}, ` +
       `error](accuracy/${scene.name}-errors.png)`,
     `The largest errors of \`${best.name}\` (reference image, image, error), from the worst: ` +
-      `${places.join('; ')}.`,
+      `${errors.join('; ')}.`,
   ].join('\n\n');
 }
 
@@ -170,7 +183,7 @@ function sceneSection(run, folder) {
     `${scene.about} ${width} x ${height} pixels, ${results.rungs.length} settings.`,
     scenePictures(run, folder),
     noiseText(run),
-    rungTables(run),
+    configurationTables(run),
   ].join('\n\n');
 }
 
@@ -178,9 +191,14 @@ function sceneSection(run, folder) {
 function overview(runs) {
   const rows = runs.map((run) => {
     const flips = PRESETS.map((name) =>
-      figure(run.results, 'metrics', 'ldr_flip', rungOf(run, name)?.converged.metrics.ldr_flip),
+      figure(
+        run.results,
+        'metrics',
+        'ldr_flip',
+        configurationOf(run, name)?.converged.metrics.ldr_flip,
+      ),
     );
-    const { metrics, indirect } = bestRung(run).converged;
+    const { metrics, indirect } = bestConfiguration(run).converged;
     const { noise } = run.results.setup.reference;
     return [
       run.scene.title,

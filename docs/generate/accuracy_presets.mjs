@@ -4,7 +4,7 @@
 
 /**
  * @typedef {{ name: string, settings: any, frame_ms: number, settle_ms: number, settled: boolean,
- *   metrics: any }} Rung
+ *   metrics: any }} Configuration
  */
 
 export const PRESETS = ['draft', 'interactive', 'high', 'final'];
@@ -15,21 +15,22 @@ export const MAX_EXCESS = 1.1;
 /** As fast is what is as fast both while the camera moves and until its image has converged. */
 const TIMES = ['frame_ms', 'settle_ms'];
 
-const flipOf = (rung) => rung.metrics.ldr_flip;
+const flipOf = (configuration) => configuration.metrics.ldr_flip;
 
 /** What has not settled takes longer than was waited for. */
-const timeOf = (rung, time) => (time === 'settle_ms' && !rung.settled ? Infinity : rung[time]);
+const timeOf = (configuration, time) =>
+  time === 'settle_ms' && !configuration.settled ? Infinity : configuration[time];
 
-const hasFigures = (rung) =>
-  [flipOf(rung), ...TIMES.map((time) => rung[time])].every(Number.isFinite);
+const hasFigures = (configuration) =>
+  [flipOf(configuration), ...TIMES.map((time) => configuration[time])].every(Number.isFinite);
 
 /**
  * The configuration that is the preset itself, whatever its name.
- * @param {Rung[]} rungs
- * @returns {Rung | undefined}
+ * @param {Configuration[]} configurations
+ * @returns {Configuration | undefined}
  */
-export const rungOfPreset = (rungs, preset) =>
-  rungs.find(
+export const configurationOfPreset = (configurations, preset) =>
+  configurations.find(
     ({ settings }) =>
       settings.preset === preset && settings.scale === 1 && Object.keys(settings.set).length === 0,
   );
@@ -37,45 +38,50 @@ export const rungOfPreset = (rungs, preset) =>
 /**
  * The point of the front at a preset's time: of the configurations at most as slow, itself
  * included, the one that errs least.
- * @param {Rung[]} rungs the configurations of one scene
- * @returns {Rung | undefined} none if the preset has no figures
+ * @param {Configuration[]} configurations the configurations of one scene
+ * @returns {Configuration | undefined} none if the preset has no figures
  */
-export function frontAt(rungs, preset) {
-  const own = rungOfPreset(rungs, preset);
+export function frontAt(configurations, preset) {
+  const own = configurationOfPreset(configurations, preset);
   if (!own || !hasFigures(own)) return undefined;
-  const asFast = rungs.filter(
-    (rung) => hasFigures(rung) && TIMES.every((time) => timeOf(rung, time) <= timeOf(own, time)),
+  const asFast = configurations.filter(
+    (configuration) =>
+      hasFigures(configuration) &&
+      TIMES.every((time) => timeOf(configuration, time) <= timeOf(own, time)),
   );
-  return asFast.reduce((best, rung) => (flipOf(rung) < flipOf(best) ? rung : best), own);
+  return asFast.reduce(
+    (best, configuration) => (flipOf(configuration) < flipOf(best) ? configuration : best),
+    own,
+  );
 }
 
 /**
  * Each preset in one scene.
- * @param {{ rungs: Rung[] }} scene
- * @returns {{ preset: string, own?: Rung, front?: Rung, excess: number, isNear: boolean }[]}
- *   `excess`: the preset's LDR-FLIP over the front's, 1 on it; infinite where the preset was not
- *   measured
+ * @param {{ rungs: Configuration[] }} scene
+ * @returns {{ preset: string, own?: Configuration, front?: Configuration, excess: number, isNear:
+ *   boolean }[]} `excess`: the preset's LDR-FLIP over the front's, 1 on it; infinite where the
+ *   preset was not measured
  */
-export function judgePresets({ rungs }) {
+export function judgePresets({ rungs: configurations }) {
   return PRESETS.map((preset) => {
-    const own = rungOfPreset(rungs, preset);
-    const front = frontAt(rungs, preset);
+    const own = configurationOfPreset(configurations, preset);
+    const front = frontAt(configurations, preset);
     const excess = !own || !front ? Infinity : front === own ? 1 : flipOf(own) / flipOf(front);
     return { preset, own, front, excess, isNear: excess <= MAX_EXCESS };
   });
 }
 
 /** The figures that a preset is judged by. */
-function judgedText(rung) {
-  const settling = rung.settled
-    ? `${rung.settle_ms} ms to settle`
-    : `not settled after ${rung.settle_ms} ms`;
-  return `LDR-FLIP ${flipOf(rung)}, ${rung.frame_ms} ms a frame, ${settling}`;
+function judgedText(configuration) {
+  const settling = configuration.settled
+    ? `${configuration.settle_ms} ms to settle`
+    : `not settled after ${configuration.settle_ms} ms`;
+  return `LDR-FLIP ${flipOf(configuration)}, ${configuration.frame_ms} ms a frame, ${settling}`;
 }
 
 /**
  * What is wrong with the presets in one scene, a sentence each.
- * @param {{ name: string, rungs: Rung[] }} scene
+ * @param {{ name: string, rungs: Configuration[] }} scene
  */
 export function faultsOf(scene) {
   return judgePresets(scene)
@@ -86,10 +92,11 @@ export function faultsOf(scene) {
       const [more, allowed] = [excess - 1, MAX_EXCESS - 1].map(
         (part) => `${(100 * part).toFixed(1)} %`,
       );
-      const [mine, other] = [own, front].map((rung) => judgedText(rung));
+      const [mine, other] = [own, front].map((configuration) => judgedText(configuration));
       return (
-        `${scene.name}: preset ${preset} (${mine}) errs ${more} more than rung ${front.name} ` +
-        `(${other}), which is at most as slow; up to ${allowed} is allowed`
+        `${scene.name}: preset ${preset} (${mine}) errs ${more} more than ` +
+        `configuration ${front.name} (${other}), which is at most as slow; ` +
+        `up to ${allowed} is allowed`
       );
     });
 }
@@ -98,11 +105,11 @@ export function faultsOf(scene) {
  * Whether settings beside the presets were measured: without them, any preset is on the front of
  * what there is.
  */
-export const hasVariations = ({ rungs }) =>
-  rungs.some(
-    (rung) =>
-      rung.settings.set.gi_method !== 'none' &&
-      !PRESETS.some((preset) => rungOfPreset(rungs, preset) === rung),
+export const hasVariations = ({ rungs: configurations }) =>
+  configurations.some(
+    (configuration) =>
+      configuration.settings.set.gi_method !== 'none' &&
+      !PRESETS.some((preset) => configurationOfPreset(configurations, preset) === configuration),
   );
 
 /**
@@ -125,7 +132,7 @@ export function tableChanges(recorded, present) {
 
 /**
  * A table of all presets in all scenes.
- * @param {{ title: string, rungs: Rung[] }[]} scenes
+ * @param {{ title: string, rungs: Configuration[] }[]} scenes
  * @returns {string} Markdown
  */
 export function presetTable(scenes) {

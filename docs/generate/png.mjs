@@ -68,7 +68,7 @@ function filter({ width, height, rgb }) {
   const out = Buffer.alloc(height * (row + 1));
   for (let y = 0; y < height; y++) {
     const at = y * row;
-    let least = Infinity;
+    let minSum = Infinity;
     for (const [kind, predict] of PREDICTORS.entries()) {
       const line = new Uint8Array(row);
       let sum = 0;
@@ -79,8 +79,8 @@ function filter({ width, height, rgb }) {
         line[i] = rgb[at + i] - predict(a, b, c);
         sum += Math.min(line[i], 256 - line[i]);
       }
-      if (sum >= least) continue;
-      least = sum;
+      if (sum >= minSum) continue;
+      minSum = sum;
       out[y * (row + 1)] = kind;
       out.set(line, y * (row + 1) + 1);
     }
@@ -143,9 +143,9 @@ export function cropped(picture, { x, y, width, height }) {
 export function resized(picture, width) {
   const step = picture.width / width;
   const out = makePicture(width, Math.max(1, Math.round(picture.height / step)));
-  const span = (at, most) => {
-    const first = Math.min(Math.floor(at * step), most - 1);
-    return [first, Math.min(Math.max(first + 1, Math.floor((at + 1) * step)), most)];
+  const span = (at, max) => {
+    const first = Math.min(Math.floor(at * step), max - 1);
+    return [first, Math.min(Math.max(first + 1, Math.floor((at + 1) * step)), max)];
   };
   for (let y = 0; y < out.height; y++)
     for (let x = 0; x < out.width; x++) {

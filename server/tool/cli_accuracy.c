@@ -178,12 +178,13 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
         return false;
     const char *wrong = NULL;
     options->shot.source = parser.arguments[0];
-    int truths = (options->reference != NULL) + (options->spp > 0) + (options->until_noise > 0.0);
+    int references =
+        (options->reference != NULL) + (options->spp > 0) + (options->until_noise > 0.0);
     if (parser.argument_count == 0)
         wrong = "no scene given; see voxcast accuracy --help";
     else if (!options->out)
         wrong = "no --out DIR given";
-    else if (truths > 1)
+    else if (references > 1)
         wrong = "--reference, --reference-spp and --until-noise exclude each other";
     else if (options->reference_direct && !options->reference)
         wrong = "--reference-direct needs --reference";
@@ -192,7 +193,7 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
         wrong = "--preset and --view are up to the ladder; see voxcast accuracy --help";
     else if (options->shot.settings.gi == GI_METHOD_REFERENCE)
         wrong = "--gi reference is the truth, and no rung; see voxcast accuracy --help";
-    if (truths == 0)
+    if (references == 0)
         options->until_noise = DEFAULT_NOISE;
     if (wrong)
         *out_status = cli_fail(CLI_EXIT_USAGE, "%s", wrong);

@@ -24,25 +24,25 @@ import { fileURLToPath } from 'node:url';
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 
 describe('./dev', () => {
-  let folder, tree, bin;
+  let folder, checkout, bin;
 
-  // A copy of the tree with build folders of its own, and a folder of programs that take precedence
+  // A checkout with build folders of its own, and a folder of programs that take precedence
   // over others.
   before(() => {
     folder = mkdtempSync(join(tmpdir(), 'voxcast-dev-'));
-    tree = join(folder, 'tree');
+    checkout = join(folder, 'checkout');
     bin = join(folder, 'bin');
-    mkdirSync(tree);
+    mkdirSync(checkout);
     mkdirSync(bin);
     const files = spawnSync('git', ['-C', ROOT, 'ls-files', '-z', '-co', '--exclude-standard'], {
       encoding: 'utf8',
     });
     for (const file of files.stdout.split('\0'))
-      if (file && existsSync(join(ROOT, file))) cpSync(join(ROOT, file), join(tree, file));
+      if (file && existsSync(join(ROOT, file))) cpSync(join(ROOT, file), join(checkout, file));
     for (const name of ['lil-gui', 'uplot', '.package-lock.json'])
       cpSync(
         join(ROOT, 'web_client/node_modules', name),
-        join(tree, 'web_client/node_modules', name),
+        join(checkout, 'web_client/node_modules', name),
         { recursive: true },
       );
   });
@@ -56,7 +56,7 @@ describe('./dev', () => {
   function dev(args, env = {}) {
     const path = `${bin}:${process.env.PATH}`;
     return spawnSync('./dev', args, {
-      cwd: tree,
+      cwd: checkout,
       encoding: 'utf8',
       env: { ...process.env, PATH: path, ...env },
     });
@@ -83,7 +83,7 @@ describe('./dev', () => {
       rmSync(join(bin, name));
       assert.equal(status, 1);
       assert.match(stderr, message);
-      assert.ok(!existsSync(join(tree, 'build')), 'nothing was built');
+      assert.ok(!existsSync(join(checkout, 'build')), 'nothing was built');
     });
 
   test('heals a folder whose configuring failed, and builds no tests to run', () => {
@@ -91,13 +91,13 @@ describe('./dev', () => {
     assert.notEqual(broken.status, 0);
     assert.match(broken.stderr, /epoxy/);
     assert.ok(
-      existsSync(join(tree, 'build/release/CMakeCache.txt')),
+      existsSync(join(checkout, 'build/release/CMakeCache.txt')),
       'the folder is half-configured',
     );
     const { status, stderr } = dev(['build']);
     assert.equal(status, 0, stderr);
-    assert.ok(existsSync(join(tree, 'build/release/bin/voxcastd')));
-    assert.ok(!existsSync(join(tree, 'build/release/bin/test_options')), 'no test is built');
+    assert.ok(existsSync(join(checkout, 'build/release/bin/voxcastd')));
+    assert.ok(!existsSync(join(checkout, 'build/release/bin/test_options')), 'no test is built');
     const started = performance.now();
     assert.equal(dev(['build']).stderr, '', 'what is done is skipped without a word');
     assert.ok(performance.now() - started < 20000);
@@ -155,7 +155,7 @@ describe('./dev bare', { skip: process.getuid() !== 0 && 'only root can make a b
     const owner = (path) => statSync(path).uid;
     assert.ok(
       gitObjects().every((path) => owner(path) === owner(ROOT)),
-      'the tree that was cloned keeps its owner',
+      'the checkout that was cloned keeps its owner',
     );
   });
 });

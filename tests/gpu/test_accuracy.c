@@ -58,7 +58,7 @@ static const cJSON *at(const cJSON *json, const char *name)
     return item;
 }
 
-static void test_named_ladders(void **state)
+static void test_named_sweeps(void **state)
 {
     (void)state;
     struct sweep *sweep = malloc(sizeof(*sweep));
@@ -75,7 +75,7 @@ static void test_named_ladders(void **state)
     free(sweep);
 }
 
-static void test_ladders_in_files(void **state)
+static void test_sweeps_in_files(void **state)
 {
     (void)state;
     struct sweep *sweep = malloc(sizeof(*sweep));
@@ -265,7 +265,7 @@ static void test_a_run(void **state)
     cJSON_Delete(results);
 }
 
-static void test_wrong_truths(void **state)
+static void test_wrong_references(void **state)
 {
     (void)state;
     struct error error = {""};
@@ -296,8 +296,8 @@ int main(void)
     if (!mkdtemp(folder))
         return 1;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_named_ladders), cmocka_unit_test(test_ladders_in_files),
-        cmocka_unit_test(test_pareto_front),  cmocka_unit_test(test_wrong_truths),
+        cmocka_unit_test(test_named_sweeps),  cmocka_unit_test(test_sweeps_in_files),
+        cmocka_unit_test(test_pareto_front),  cmocka_unit_test(test_wrong_references),
         cmocka_unit_test(test_quality_table), cmocka_unit_test(test_a_run),
     };
     return cmocka_run_group_tests(tests, NULL, remove_folder);

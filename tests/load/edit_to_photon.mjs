@@ -61,7 +61,7 @@ try {
   await page.waitForTimeout(2000);
   const { times, parts, width, height } = await page.evaluate(measure, edits + WARM_UP);
   const sorted = times.slice(WARM_UP).sort((a, b) => a - b);
-  const at = (share) => Number(sorted[Math.floor(share * (sorted.length - 1))].toFixed(1));
+  const at = (fraction) => Number(sorted[Math.floor(fraction * (sorted.length - 1))].toFixed(1));
   const median = (name) => {
     const list = parts.slice(WARM_UP).map((part) => part[name]).sort((a, b) => a - b);
     return Number(list[list.length >> 1].toFixed(1));

@@ -137,7 +137,7 @@ static void put_texels(struct writer *writer, const struct exr_file_params *para
     }
 }
 
-static uint32_t at_most(uint32_t value, uint32_t limit)
+static uint32_t min_of(uint32_t value, uint32_t limit)
 {
     return value < limit ? value : limit;
 }
@@ -155,8 +155,8 @@ static void put_chunks(struct writer *writer, const struct exr_file_params *para
     for (uint32_t i = 0; i < across * down; i++) {
         uint32_t tile_x = i % across, tile_y = i / across;
         uint32_t x = tile_x * edge, y = edge ? tile_y * edge : tile_y;
-        uint32_t width = edge ? at_most(edge, params->width - x) : params->width;
-        uint32_t height = edge ? at_most(edge, params->height - y) : 1;
+        uint32_t width = edge ? min_of(edge, params->width - x) : params->width;
+        uint32_t height = edge ? min_of(edge, params->height - y) : 1;
         uint64_t offset = writer->size;
         memcpy(writer->bytes + table + i * sizeof(offset), &offset, sizeof(offset));
         if (edge)

@@ -98,7 +98,7 @@ static void slow_frames_lead_to_draft_and_fast_ones_back(void **state)
     assert_int_equal(moving_row(&controller, &final_request), QUALITY_INTERACTIVE);
 }
 
-static void single_steps_and_still_frames_do_not_count(void **state)
+static void single_steps_and_frames_at_rest_do_not_count(void **state)
 {
     (void)state;
     struct quality_controller controller = {0};
@@ -149,7 +149,7 @@ int main(void)
         cmocka_unit_test(a_wanted_row_is_never_exceeded),
         cmocka_unit_test(without_adaption_the_row_is_fixed),
         cmocka_unit_test(slow_frames_lead_to_draft_and_fast_ones_back),
-        cmocka_unit_test(single_steps_and_still_frames_do_not_count),
+        cmocka_unit_test(single_steps_and_frames_at_rest_do_not_count),
         cmocka_unit_test(steady_scenes_do_not_flap),
         cmocka_unit_test(lower_rows_are_not_done),
     };

@@ -33,7 +33,7 @@ const figures = (
   settled,
   metrics: { ldr_flip: flip },
 });
-const presetRung = (preset, frame_ms, flip, rest = {}) =>
+const presetConfiguration = (preset, frame_ms, flip, rest = {}) =>
   figures(preset, frame_ms, flip, { preset, set: {}, ...rest });
 
 /** A scene whose presets form the whole front, except for what is added. */
@@ -41,16 +41,16 @@ const sceneWith = (...others) => ({
   name: 'box',
   rungs: [
     ...others,
-    presetRung('draft', 10, 0.4),
-    presetRung('interactive', 20, 0.3),
-    presetRung('high', 40, 0.2),
-    presetRung('final', 400, 0.1),
+    presetConfiguration('draft', 10, 0.4),
+    presetConfiguration('interactive', 20, 0.3),
+    presetConfiguration('high', 40, 0.2),
+    presetConfiguration('final', 400, 0.1),
   ],
 });
 
 const judged = (scene, preset) => judgePresets(scene).find((one) => one.preset === preset);
 
-test('a preset that no rung beats is on the front', () => {
+test('a preset that no configuration beats is on the front', () => {
   const scene = sceneWith(
     figures('slower', 41, 0.15),
     figures('worse', 30, 0.25),
@@ -79,12 +79,12 @@ test('a preset may err up to 10 % more than the front', () => {
   );
 });
 
-test('a fault names scene, preset, the better rung and both figures', () => {
+test('a fault names scene, preset, the better configuration and both figures', () => {
   const faults = faultsOf(sceneWith(figures('better', 18, 0.25)));
   assert.deepEqual(faults, [
     'box: preset interactive (LDR-FLIP 0.3, 20 ms a frame, 200 ms to settle) errs 20.0 % ' +
-      'more than rung better (LDR-FLIP 0.25, 18 ms a frame, 180 ms to settle), which is at ' +
-      'most as slow; up to 10.0 % is allowed',
+      'more than configuration better (LDR-FLIP 0.25, 18 ms a frame, 180 ms to settle), which ' +
+      'is at most as slow; up to 10.0 % is allowed',
   ]);
 });
 
@@ -102,7 +102,7 @@ test('presets are compared with what settles as soon, too', () => {
     fault,
     new RegExp(
       String.raw`^box: preset final \(LDR-FLIP 0\.1, 400 ms a frame, 4000 ms to settle\) ` +
-        String.raw`errs 100\.0 % more than rung settles-soon`,
+        String.raw`errs 100\.0 % more than configuration settles-soon`,
     ),
   );
 });
@@ -115,19 +115,21 @@ test('what has no figures beats nothing, and is no preset near the front', () =>
   const scene = sceneWith();
   const without = { ...scene, rungs: scene.rungs.filter(({ name }) => name !== 'draft') };
   assert.deepEqual(faultsOf(without), ['box: preset draft was not measured']);
-  without.rungs.push(presetRung('draft', 10, null));
+  without.rungs.push(presetConfiguration('draft', 10, null));
   assert.deepEqual(faultsOf(without), ['box: preset draft has no figures of error and time']);
   // A preset with other settings is not the preset.
   const varied = {
     ...scene,
-    rungs: scene.rungs.map((rung) =>
-      rung.name === 'final' ? figures('final', 400, 0.1, { preset: 'final' }) : rung,
+    rungs: scene.rungs.map((configuration) =>
+      configuration.name === 'final'
+        ? figures('final', 400, 0.1, { preset: 'final' })
+        : configuration,
     ),
   };
   assert.deepEqual(faultsOf(varied), ['box: preset final was not measured']);
 });
 
-test('a ladder of presets alone proves nothing', () => {
+test('a sweep of presets alone proves nothing', () => {
   assert.equal(hasVariations(sceneWith()), false);
   assert.equal(
     hasVariations(sceneWith(figures('none', 5, 0.5, { set: { gi_method: 'none' } }))),
@@ -219,7 +221,7 @@ test('figures are few, rounded, in the order of names, and a line each', () => {
       ['sponza', 'sponza/sponza.glb'],
     ],
   );
-  const [{ rungs, ...facts }] = scenes;
+  const [{ rungs: configurations, ...facts }] = scenes;
   assert.deepEqual(facts, {
     name: 'cornell',
     source: 'builtin:cornell',
@@ -228,13 +230,13 @@ test('figures are few, rounded, in the order of names, and a line each', () => {
     truth: { noise: 0.004988, ldr_flip: 0.002133 },
   });
   assert.deepEqual(
-    rungs.map(({ name, frame_ms }) => [name, frame_ms]),
+    configurations.map(({ name, frame_ms }) => [name, frame_ms]),
     [
       ['a', 333.3],
       ['b', 12.35],
     ],
   );
-  assert.deepEqual(rungs[1], {
+  assert.deepEqual(configurations[1], {
     name: 'b',
     settings: { preset: 'high', scale: 1, set: { gi_method: 'grid' } },
     frame_ms: 12.35,

@@ -41,7 +41,7 @@ const figures = (flip) => ({
   energy_blue: 0.9,
 });
 
-function rung(name, method, ms, flip, set = {}, scale = 1) {
+function configuration(name, method, ms, flip, set = {}, scale = 1) {
   return {
     name,
     method,
@@ -54,34 +54,34 @@ function rung(name, method, ms, flip, set = {}, scale = 1) {
   };
 }
 
-const RUNGS = [
-  rung('none', 'none', 5, 0.4, { gi_method: 'none' }),
-  rung('high', 'clipmap', 40, 0.1),
-  rung('final', 'clipmap', 400, 0.05),
-  rung('clipmap-bounces-4', 'clipmap', 50, 0.2, { gi_method: 'clipmap', bounces: '4' }),
-  rung('clipmap-scale-0.5', 'clipmap', 20, 0.2, { gi_method: 'clipmap' }, 0.5),
-  rung('grid-64-cache', 'grid', 20, 0.16, {
+const CONFIGURATIONS = [
+  configuration('none', 'none', 5, 0.4, { gi_method: 'none' }),
+  configuration('high', 'clipmap', 40, 0.1),
+  configuration('final', 'clipmap', 400, 0.05),
+  configuration('clipmap-bounces-4', 'clipmap', 50, 0.2, { gi_method: 'clipmap', bounces: '4' }),
+  configuration('clipmap-scale-0.5', 'clipmap', 20, 0.2, { gi_method: 'clipmap' }, 0.5),
+  configuration('grid-64-cache', 'grid', 20, 0.16, {
     gi_method: 'grid',
     voxel_resolution: '64',
     gather_mode: 'cache',
   }),
-  rung('grid-128-cache', 'grid', 60, 0.08, {
+  configuration('grid-128-cache', 'grid', 60, 0.08, {
     gi_method: 'grid',
     voxel_resolution: '128',
     gather_mode: 'cache',
   }),
-  rung('grid-64-half', 'grid', 30, 0.12, {
+  configuration('grid-64-half', 'grid', 30, 0.12, {
     gi_method: 'grid',
     voxel_resolution: '64',
     gather_mode: 'half',
   }),
-  rung('grid-128-half', 'grid', 60, 0.09, {
+  configuration('grid-128-half', 'grid', 60, 0.09, {
     gi_method: 'grid',
     voxel_resolution: '128',
     gather_mode: 'half',
   }),
 ];
-RUNGS[2].settings.preset = 'final';
+CONFIGURATIONS[2].settings.preset = 'final';
 
 const noise = (reference, smallest) => ({
   reference,
@@ -104,7 +104,7 @@ const RESULTS = {
     title: name.toUpperCase(),
     unit: '',
   })),
-  rungs: RUNGS,
+  rungs: CONFIGURATIONS,
   noise: {
     metrics: {
       ldr_flip: noise(0.004, 0.05),
@@ -168,8 +168,8 @@ test('the window that errs most is found', () => {
   assert.ok(worst.error > 0.5 && next.error < worst.error);
 });
 
-test('steps pair rungs that differ in one setting alone', () => {
-  const steps = stepsOf(RUNGS).map(({ key, from, to }) => `${key} ${from} ${to}`).sort();
+test('steps pair configurations that differ in one setting alone', () => {
+  const steps = stepsOf(CONFIGURATIONS).map(({ key, from, to }) => `${key} ${from} ${to}`).sort();
   assert.deepEqual(steps, [
     'bounces 4 unlimited',
     'gather_mode cache half',
@@ -178,7 +178,7 @@ test('steps pair rungs that differ in one setting alone', () => {
     'voxel_resolution 64 128',
     'voxel_resolution 64 128',
   ]);
-  const table = buysTable([RUNGS]);
+  const table = buysTable([CONFIGURATIONS]);
   assert.match(
     table,
     new RegExp(
@@ -190,7 +190,7 @@ test('steps pair rungs that differ in one setting alone', () => {
     table,
     /bounces: 4 → unlimited \| 1 \| −50 % \| −50 % \| −20 % \| −20 % \| −20 % \|/,
   );
-  assert.equal(buysTable([[RUNGS[0]]]), '');
+  assert.equal(buysTable([[CONFIGURATIONS[0]]]), '');
 });
 
 const run = (...options) =>
@@ -247,7 +247,7 @@ test('the page has curve, tables, marks of noise, pictures and the reasons', () 
   assert.match(page, /## Where it is wrong and why\n\n\*\*/);
   assert.doesNotMatch(page, /undefined|NaN|\[object/);
   const svg = readFileSync(join(docs, 'accuracy', 'cornell.svg'), 'utf8');
-  assert.equal(svg.match(/class="point"/g).length, RUNGS.length);
+  assert.equal(svg.match(/class="point"/g).length, CONFIGURATIONS.length);
   for (const name of ['cornell.png', 'cornell-errors.png'])
     assert.ok(statSync(join(docs, 'accuracy', name)).size > 100);
 });
@@ -275,7 +275,7 @@ test('figures stand beside the page, unless results do not tell the quality tabl
   assert.deepEqual(quality, QUALITY);
   assert.deepEqual(
     scenes.map(({ name, rungs }) => [name, rungs.length]),
-    [['cornell', RUNGS.length]],
+    [['cornell', CONFIGURATIONS.length]],
   );
 });
 

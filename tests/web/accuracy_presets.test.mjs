@@ -61,7 +61,7 @@ describe('presets by recorded figures', () => {
     assert.equal(
       missing.length,
       0,
-      `there are no figures of the full ladder for ${missing.join(', ')}; ${MEASURE}`,
+      `there are no figures of the full sweep for ${missing.join(', ')}; ${MEASURE}`,
     );
   });
 

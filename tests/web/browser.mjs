@@ -54,7 +54,7 @@ export async function openClient(page, daemon) {
     globalThis.voxcast.view.configure({ quality: 'draft' });
     return globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } });
   });
-  await untilStill(page);
+  await untilAtRest(page);
 }
 
 /**
@@ -85,7 +85,7 @@ export async function openScene(scene) {
  * Waits until this page's edits and camera are shown and the image has converged and has not
  * changed for `ms`.
  */
-export async function untilStill(page, ms = 500) {
+export async function untilAtRest(page, ms = 500) {
   await page.waitForFunction(
     () =>
       globalThis.voxcast.timer.waiting.size === 0 &&
@@ -103,16 +103,16 @@ export async function untilStill(page, ms = 500) {
 
 /** The mean colour (0 to 255) of a part of the image, which is given in fractions of its size. */
 export function meanColor(page, part = { x: 0, y: 0, width: 1, height: 1 }) {
-  return page.evaluate((share) => {
+  return page.evaluate((part) => {
     const picture = document.getElementById('picture');
     const canvas = new OffscreenCanvas(picture.width, picture.height);
     const context = canvas.getContext('2d');
     context.drawImage(picture, 0, 0);
     const { data } = context.getImageData(
-      Math.floor(share.x * picture.width),
-      Math.floor(share.y * picture.height),
-      Math.max(1, Math.floor(share.width * picture.width)),
-      Math.max(1, Math.floor(share.height * picture.height)),
+      Math.floor(part.x * picture.width),
+      Math.floor(part.y * picture.height),
+      Math.max(1, Math.floor(part.width * picture.width)),
+      Math.max(1, Math.floor(part.height * picture.height)),
     );
     const sum = [0, 0, 0];
     for (let i = 0; i < data.length; i++) if (i % 4 < 3) sum[i % 4] += data[i];

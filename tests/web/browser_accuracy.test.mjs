@@ -18,7 +18,7 @@ const RED_PNG = Buffer.from(
 
 const metrics = (flip) => ({ ldr_flip: flip, ssim: 1 - flip / 2, energy_red: 1 + flip });
 
-function rung(name, method, ms, flip) {
+function configuration(name, method, ms, flip) {
   return {
     name,
     method,
@@ -42,12 +42,12 @@ function rung(name, method, ms, flip) {
   };
 }
 
-const RUNGS = [
-  rung('live', 'grid', 25, 0.15),
-  rung('none', 'none', 10, 0.5),
-  rung('draft', 'clipmap', 20, 0.2),
-  rung('high', 'clipmap', 80, 0.1),
-  rung('final', 'clipmap', 900, 0.05),
+const CONFIGURATIONS = [
+  configuration('live', 'grid', 25, 0.15),
+  configuration('none', 'none', 10, 0.5),
+  configuration('draft', 'clipmap', 20, 0.2),
+  configuration('high', 'clipmap', 80, 0.1),
+  configuration('final', 'clipmap', 900, 0.05),
 ];
 
 /** Puts a made-up daemon's measurements into the page. `globalThis.made` steers them. */
@@ -129,7 +129,7 @@ describe('the tab of accuracy', () => {
   const text = () => panel().innerText();
   const tell = (params) => page.evaluate((given) => globalThis.made.tell(given), params);
   const calls = () => page.evaluate(() => globalThis.made.calls.splice(0));
-  const point = (name) => page.locator(`.error-chart .point[data-rung=${name}]`);
+  const point = (name) => page.locator(`.error-chart .point[data-configuration=${name}]`);
   const mode = (name) => page.locator(`input[value=${name}]`);
   const slider = () => page.locator('.budget input');
   const setBudget = async (index) => {
@@ -143,7 +143,7 @@ describe('the tab of accuracy', () => {
       pattern.source,
     );
   const measured = async (count, progress) => {
-    results.rungs = RUNGS.slice(0, count);
+    results.rungs = CONFIGURATIONS.slice(0, count);
     await tell(progress);
     await page.waitForFunction(
       (wanted) => document.querySelectorAll('.error-chart .point').length === wanted,
@@ -177,7 +177,7 @@ describe('the tab of accuracy', () => {
     await calls();
   });
 
-  test('measures by the chosen ladder and noise, and shows how the truth comes along', async () => {
+  test('measures by the chosen sweep and noise, and shows how the reference comes', async () => {
     await panel()
       .locator('.lil-controller', { hasText: 'Settings' })
       .locator('select')
@@ -229,8 +229,8 @@ describe('the tab of accuracy', () => {
     await button('Measure this view').click();
     await untilText(/Waits until another measurement has ended/);
     assert.match(await text(), /Nothing has been measured yet/);
-    await tell({ state: 'failed', message: 'no memory for the truth' });
-    assert.match(await text(), /Failed: no memory for the truth/);
+    await tell({ state: 'failed', message: 'no memory for the reference' });
+    assert.match(await text(), /Failed: no memory for the reference/);
     await button('Measure this view').click();
     await untilText(/Waits until another measurement has ended/);
     await measured(5, { state: 'done', done: 5 });
@@ -309,9 +309,9 @@ describe('the tab of accuracy', () => {
     await setBudget(3);
     assert.match(await text(), /When time does not matter: final/);
     assert.equal(await slider().getAttribute('aria-valuetext'), 'still: final');
-    const rungs = (await calls()).map(({ params }) => params.rung);
-    assert.equal(rungs.at(-1), 'final');
-    results.rungs = RUNGS.map((entry) => ({
+    const configurations = (await calls()).map(({ params }) => params.rung);
+    assert.equal(configurations.at(-1), 'final');
+    results.rungs = CONFIGURATIONS.map((entry) => ({
       ...entry,
       frame_ms: { median: entry.frame_ms.median + 40 },
     }));
@@ -321,7 +321,7 @@ describe('the tab of accuracy', () => {
       /Nothing measured keeps 33 ms: the fastest, none, takes 50 ms a frame \(LDR-FLIP 0\.5\)/,
     );
     assert.ok(!(await button('Draw with it').isVisible()));
-    results.rungs = RUNGS;
+    results.rungs = CONFIGURATIONS;
     await tell({ state: 'done', done: 5 });
     await untilText(/Within 33 ms/);
     await calls();
@@ -330,13 +330,13 @@ describe('the tab of accuracy', () => {
     assert.deepEqual(await calls(), [{ method: 'view.configure', params: { rung: 'live' } }]);
   });
 
-  test('the truth lies right of a line that mouse and keys move', async () => {
+  test('the reference lies right of a line that mouse and keys move', async () => {
     await mode('split').check();
     const divider = page.getByRole('slider', {
       name: 'Line between live picture and reference image',
     });
-    const truth = page.locator('#comparison-pictures img').first();
-    assert.match(await truth.getAttribute('src'), /accuracy\/m3\/reference\.png$/);
+    const reference = page.locator('#comparison-pictures img').first();
+    assert.match(await reference.getAttribute('src'), /accuracy\/m3\/reference\.png$/);
     await page.waitForFunction(
       () => document.querySelector('#comparison-pictures img').naturalWidth > 0,
     );
@@ -347,7 +347,7 @@ describe('the tab of accuracy', () => {
     await page.mouse.move(stage.x + stage.width / 4, stage.y + 220, { steps: 4 });
     await page.mouse.up();
     assert.equal(await divider.getAttribute('aria-valuetext'), '25 % live, 75 % reference');
-    assert.match(await truth.evaluate(({ style }) => style.clipPath), /25%\)$/);
+    assert.match(await reference.evaluate(({ style }) => style.clipPath), /25%\)$/);
     await page.keyboard.press('ArrowRight');
     assert.equal(await divider.getAttribute('aria-valuenow'), '27');
     await page.keyboard.press('PageUp');
@@ -428,7 +428,7 @@ describe('the tab of accuracy', () => {
       globalThis.voxcast.connection.call('scene.load', { source: 'builtin:furnace' }),
     );
     await untilText(/Nothing has been measured yet/);
-    assert.equal(await page.evaluate(() => globalThis.voxcast.view.rung), '');
+    assert.equal(await page.evaluate(() => globalThis.voxcast.view.configuration), '');
     assert.ok(!(await page.locator('#comparison').isVisible()));
   });
 

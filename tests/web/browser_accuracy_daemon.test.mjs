@@ -45,7 +45,7 @@ describe('the tab of accuracy and the daemon', () => {
       (source) => new RegExp(source).test(document.getElementById('panel-accuracy').innerText),
       pattern.source,
     );
-  const point = (name) => page.locator(`.error-chart .point[data-rung=${name}]`);
+  const point = (name) => page.locator(`.error-chart .point[data-configuration=${name}]`);
   const isLoaded = (index) =>
     page.waitForFunction(
       (at) => document.querySelectorAll('#comparison-pictures img')[at].naturalWidth > 0,
@@ -61,7 +61,7 @@ describe('the tab of accuracy and the daemon', () => {
     );
   };
 
-  test('measures this view: the truth comes, then points, and the live one is marked', async () => {
+  test('measures this view: the reference, then points, and the live one is marked', async () => {
     await setNoise(8);
     await button('Measure this view').click();
     await untilText(/samples a pixel|Measured \d of 6 settings/);
@@ -84,20 +84,23 @@ describe('the tab of accuracy and the daemon', () => {
     await untilText(/Drawn with your own settings/);
   });
 
-  test('the budget for still pictures draws with the least error', async () => {
+  test('the budget for images at rest draws with the least error', async () => {
     await panel().locator('.budget input').focus();
     await page.keyboard.press('End');
     await untilText(/When time does not matter: .*LDR-FLIP/);
-    await page.waitForFunction(() => globalThis.voxcast.view.rung !== '');
+    await page.waitForFunction(() => globalThis.voxcast.view.configuration !== '');
     const [drawn, errors] = await page.evaluate(() => {
       const { measurement, view } = globalThis.voxcast;
-      const errorOf = (rung) => rung.converged.metrics.ldr_flip;
-      return [errorOf(measurement.rung(view.rung)), measurement.rungs.map(errorOf)];
+      const errorOf = (configuration) => configuration.converged.metrics.ldr_flip;
+      return [
+        errorOf(measurement.configuration(view.configuration)),
+        measurement.configurations.map(errorOf),
+      ];
     });
     assert.equal(drawn, Math.min(...errors));
   });
 
-  test('truth and errors lie over the picture while the camera is the measured one', async () => {
+  test('reference and errors lie over the image while the camera is the measured one', async () => {
     await page.locator('input[value=split]').check();
     await isLoaded(0);
     assert.ok(
@@ -118,7 +121,7 @@ describe('the tab of accuracy and the daemon', () => {
 
   test('a refusal of the daemon is told', async () => {
     const message = await page.evaluate(() =>
-      globalThis.voxcast.view.chooseRung('nonesuch').catch((error) => error.message),
+      globalThis.voxcast.view.chooseConfiguration('nonesuch').catch((error) => error.message),
     );
     assert.match(message, /nonesuch.*live/);
   });
@@ -131,7 +134,7 @@ describe('the tab of accuracy and the daemon', () => {
     await untilText(/Cancelled after 0 of 6 settings/);
     assert.ok(await button('Measure this view').isEnabled());
     assert.ok(!(await button('Cancel').isVisible()));
-    assert.equal(await page.evaluate(() => globalThis.voxcast.view.rung), '');
+    assert.equal(await page.evaluate(() => globalThis.voxcast.view.configuration), '');
   });
 
   test('threw nothing', () => assert.deepEqual(client.problems, []));

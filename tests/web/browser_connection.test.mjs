@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
-import { difference, openBrowser, openClient, pixels, untilStill } from './browser.mjs';
+import { difference, openBrowser, openClient, pixels, untilAtRest } from './browser.mjs';
 import { Client, PATIENCE_MS, startDaemon, stopDaemon } from './client.mjs';
 
 describe('a server that goes away', () => {
@@ -28,7 +28,7 @@ describe('a server that goes away', () => {
     await page.mouse.down();
     await page.mouse.move(600, 400, { steps: 5 });
     await page.mouse.up();
-    await untilStill(page);
+    await untilAtRest(page);
     const turned = await pixels(page);
     await page.locator('#tab-light').click();
     await page.locator('[data-add-light=point]').click();
@@ -45,13 +45,13 @@ describe('a server that goes away', () => {
     await page.evaluate(() =>
       globalThis.voxcast.connection.call('settings.update', { set: { gi_method: 'none' } }),
     );
-    await untilStill(page, 1000);
+    await untilAtRest(page, 1000);
     assert.equal(await page.locator('[data-light]').count(), 0, 'the new server has no such light');
     // Nothing shows which image at rest is the first without indirect light.
     for (
       const end = Date.now() + PATIENCE_MS;
       difference(turned, await pixels(page)) >= 1;
-      await untilStill(page, 1000)
+      await untilAtRest(page, 1000)
     )
       assert.ok(Date.now() < end, 'the camera stays where it was');
   });

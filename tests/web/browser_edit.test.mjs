@@ -10,7 +10,7 @@ import {
   openClient,
   pixels,
   setParameter,
-  untilStill,
+  untilAtRest,
 } from './browser.mjs';
 import { startDaemon, stopDaemon } from './client.mjs';
 
@@ -37,15 +37,15 @@ describe('edits', () => {
     await page
       .locator('[data-parameter="settings.exposure_mode"] select')
       .selectOption({ label: 'Fixed' });
-    await untilStill(page);
+    await untilAtRest(page);
     const dark = mean(await meanColor(page));
     await page.locator('[data-add-light=point]').click();
     await page.locator('[data-parameter="light.intensity"]').waitFor();
-    await untilStill(page);
+    await untilAtRest(page);
     const lit = mean(await meanColor(page));
     assert.ok(lit > dark + 5, `${dark} became ${lit}`);
     await setParameter(page, 'light.intensity', 0.1);
-    await untilStill(page);
+    await untilAtRest(page);
     const dim = mean(await meanColor(page));
     assert.ok(dim < lit - 5, `${lit} became ${dim}`);
   });
@@ -55,11 +55,11 @@ describe('edits', () => {
     await page.locator('#tab-light').click();
     assert.equal(await page.locator('[data-light]').count(), 1);
     await page.locator('[data-light]').click();
-    await untilStill(page);
+    await untilAtRest(page);
     const before = await pixels(page);
     await setParameter(ours.page, 'light.intensity', 2);
-    await untilStill(ours.page);
-    await untilStill(page, 1000);
+    await untilAtRest(ours.page);
+    await untilAtRest(page, 1000);
     assert.ok(difference(before, await pixels(page)) > 5);
     const shown = page.locator('[data-parameter="light.intensity"] input');
     assert.equal(await shown.inputValue(), '2');
@@ -74,7 +74,7 @@ describe('edits', () => {
     const color = page.locator('[data-parameter="material.base_color"] input[type=text]');
     await color.fill('2020ff');
     await color.blur();
-    await untilStill(page);
+    await untilAtRest(page);
     const after = await meanColor(page, WALL);
     assert.ok(after[2] > 1.5 * after[1], `the wall is ${after}`);
   });
@@ -82,16 +82,16 @@ describe('edits', () => {
   test('undo takes the material back, redo does it again', async () => {
     const { page } = ours;
     await page.locator('#tool-undo').click();
-    await untilStill(page);
+    await untilAtRest(page);
     const undone = await meanColor(page, WALL);
     assert.ok(undone[1] > undone[2], `the wall is ${undone}`);
     await page.locator('#tool-redo').click();
-    await untilStill(page);
+    await untilAtRest(page);
     const redone = await meanColor(page, WALL);
     assert.ok(redone[2] > redone[1], `the wall is ${redone}`);
   });
 
-  test('a refused edit tells the field and its range, and the panel shows the truth', async () => {
+  test('a refused edit tells field and range; the panel shows what holds', async () => {
     const { page } = ours;
     await page.locator('#tab-light').click();
     await page.locator('[data-light]').click();
@@ -113,7 +113,7 @@ describe('edits', () => {
     await page.mouse.down();
     await page.mouse.move(x + 150, y + 60, { steps: 12 });
     await page.mouse.up();
-    await untilStill(page);
+    await untilAtRest(page);
     const moved = await page.locator('.light-icon .disc').boundingBox();
     assert.ok(
       Math.abs(moved.x - box.x - 150) < 3 && Math.abs(moved.y - box.y - 60) < 3,
@@ -121,7 +121,7 @@ describe('edits', () => {
     );
     assert.ok(difference(before, await pixels(page)) > 2);
     await page.locator('#tool-undo').click();
-    await untilStill(page);
+    await untilAtRest(page);
     assert.ok(difference(before, await pixels(page)) < 1);
   });
 
@@ -132,7 +132,7 @@ describe('edits', () => {
       await page.locator('[data-light]').waitFor({ state: 'detached' });
       assert.equal(await page.locator('.light-icon').count(), 0);
     }
-    await untilStill(ours.page);
+    await untilAtRest(ours.page);
     const wall = await meanColor(ours.page, WALL);
     assert.ok(wall[1] > wall[2], `the wall is ${wall}`);
   });
@@ -143,7 +143,7 @@ describe('edits', () => {
     await page.locator('#scene-source').selectOption('builtin:material-grid');
     await page.locator('#panel-scene .loader button').click();
     await page.waitForFunction((epoch) => globalThis.voxcast.document.data.epoch !== epoch, before);
-    await untilStill(page, 1000);
+    await untilAtRest(page, 1000);
     await page.mouse.click(525, 455);
     await page.locator('.tree [aria-selected=true]').waitFor();
     const box = await page.locator('.plane').boundingBox();

@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
-import { meanColor, openBrowser, openClient, untilStill } from './browser.mjs';
+import { meanColor, openBrowser, openClient, untilAtRest } from './browser.mjs';
 import { startDaemon, stopDaemon } from './client.mjs';
 
 /** A red Radiance image of 4 x 2 texels. */
@@ -49,7 +49,7 @@ describe('environment images', () => {
     await loader().locator('button:has-text("Reload")').waitFor();
     // Shaders may have to be compiled first.
     await page.locator(`#stage:not([data-frame="${frame}"])`).waitFor();
-    await untilStill(page);
+    await untilAtRest(page);
     const [redder, greener] = await meanColor(page);
     assert.ok(
       redder / greener > 1.2 * (red / green),

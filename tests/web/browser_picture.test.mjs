@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, describe, test } from 'node:test';
 
-import { difference, meanColor, openScene, pixels, untilStill } from './browser.mjs';
+import { difference, meanColor, openScene, pixels, untilAtRest } from './browser.mjs';
 
 const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
@@ -32,11 +32,11 @@ describe('the picture', () => {
     await page.mouse.down();
     await page.mouse.move(620, 420, { steps: 6 });
     await page.mouse.up();
-    await untilStill(page);
+    await untilAtRest(page);
     assert.ok(difference(first, await pixels(page)) > 5);
     await page.locator('#tab-scene').click();
     await page.locator('[data-camera]').first().click();
-    await untilStill(page);
+    await untilAtRest(page);
     assert.ok(difference(first, await pixels(page)) < 1, 'the scene camera brings the view back');
   });
 
@@ -52,19 +52,22 @@ describe('the picture', () => {
 
   test('selects, walks and hides by the keyboard alone', async () => {
     await page.keyboard.press('Escape');
-    const tree = page.locator('[role=tree]');
+    const sceneTree = page.locator('[role=tree]');
     for (let i = 0; i < 40; i++) {
       await page.keyboard.press('Tab');
-      if (await tree.evaluate((element) => element === document.activeElement)) break;
+      if (await sceneTree.evaluate((element) => element === document.activeElement)) break;
     }
     await page.keyboard.press('Home');
     await page.keyboard.press('End');
     const chosen = page.locator('[role=treeitem][aria-selected=true]');
     assert.match(await chosen.innerText(), /tall block/);
-    assert.equal(await tree.getAttribute('aria-activedescendant'), await chosen.getAttribute('id'));
+    assert.equal(
+      await sceneTree.getAttribute('aria-activedescendant'),
+      await chosen.getAttribute('id'),
+    );
     const first = await pixels(page);
     await page.keyboard.press('v');
-    await untilStill(page);
+    await untilAtRest(page);
     assert.ok(difference(first, await pixels(page)) > 1, 'the block is hidden');
     await page.keyboard.press('v');
     const stage = page.locator('#controls');
@@ -76,12 +79,12 @@ describe('the picture', () => {
     assert.equal(await chosen.count(), 0);
     await page.keyboard.press('Enter');
     await chosen.waitFor();
-    const still = await pixels(page);
+    const atRest = await pixels(page);
     await page.keyboard.down('KeyW');
     await page.waitForTimeout(400);
     await page.keyboard.up('KeyW');
-    await untilStill(page);
-    assert.ok(difference(still, await pixels(page)) > 3, 'W walks');
+    await untilAtRest(page);
+    assert.ok(difference(atRest, await pixels(page)) > 3, 'W walks');
   });
 
   test('comes nearer when two fingers spread', async () => {
@@ -104,7 +107,7 @@ describe('the picture', () => {
     await send('touchEnd', null);
     const ratio = (await eye()) / before;
     assert.ok(Math.abs(ratio - 0.5) < 0.08, `the distance became ${ratio} of what it was`);
-    await untilStill(page);
+    await untilAtRest(page);
   });
 
   for (const [width, height] of [
@@ -113,7 +116,7 @@ describe('the picture', () => {
   ]) {
     test(`has no serious accessibility fault at ${width} by ${height}`, async () => {
       await page.setViewportSize({ width, height });
-      await untilStill(page);
+      await untilAtRest(page);
       await page.evaluate(axe);
       for (const name of ['scene', 'light', 'material', 'render', 'view', 'stats']) {
         await page.locator(`#tab-${name}`).click();

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 
-import { openScene, setParameter, untilStill } from './browser.mjs';
+import { openScene, setParameter, untilAtRest } from './browser.mjs';
 import { Client } from './client.mjs';
 
 describe('the tab of rendering', () => {
@@ -85,7 +85,7 @@ describe('the tab of rendering', () => {
     assert.equal(await rests('settings.bounces'), 'needs a method');
     assert.equal(await rests('settings.voxelize_every_frame'), 'needs a method');
     assert.ok(await page.locator('#panel-render .hint').first().isVisible());
-    await untilStill(page);
+    await untilAtRest(page);
   });
 
   test('a refused step is told and taken back', async () => {

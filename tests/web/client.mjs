@@ -165,7 +165,7 @@ export class Client {
   }
 
   /** Waits until the image has converged and no frame has come for `ms` since. */
-  async untilStill(ms = 600) {
+  async untilAtRest(ms = 600) {
     let count = -1;
     while (count !== this.frames.length || !this.frames.at(-1)?.converged) {
       count = this.frames.length;

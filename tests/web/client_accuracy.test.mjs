@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { pickRung } from '../../web_client/accuracy/budget.js';
+import { pickConfiguration } from '../../web_client/accuracy/budget.js';
 import { EditWatch } from '../../web_client/accuracy/edit_watch.js';
 import { heatMapColor } from '../../web_client/accuracy/heat_map.js';
 import { Measurement } from '../../web_client/accuracy/measurement.js';
@@ -20,36 +20,38 @@ globalThis.CustomEvent ??= class extends Event {
   }
 };
 
-const rung = (name, ms, flip) => ({
+const configuration = (name, ms, flip) => ({
   name,
   frame_ms: { median: ms },
   converged: { ms: 10 * ms, metrics: { ldr_flip: flip } },
 });
 
 test('a budget calls for the least error among what is fast enough', () => {
-  const rungs = [
-    rung('none', 5, 0.4),
-    rung('draft', 16, 0.2),
-    rung('good', 30, 0.1),
-    rung('worse', 31, 0.15),
-    rung('best', 900, 0.05),
+  const configurations = [
+    configuration('none', 5, 0.4),
+    configuration('draft', 16, 0.2),
+    configuration('good', 30, 0.1),
+    configuration('worse', 31, 0.15),
+    configuration('best', 900, 0.05),
   ];
-  const names = [16, 33, 100, Infinity].map((ms) => pickRung(rungs, ms).best.name);
+  const names = [16, 33, 100, Infinity].map(
+    (ms) => pickConfiguration(configurations, ms).best.name,
+  );
   assert.deepEqual(names, ['draft', 'good', 'good', 'best']);
-  const slow = pickRung(rungs, 4);
+  const slow = pickConfiguration(configurations, 4);
   assert.equal(slow.best, null);
   assert.equal(slow.fastest.name, 'none');
 });
 
 test('of equal errors the faster is taken; what has no figures is left out', () => {
-  const rungs = [
-    rung('slow', 20, 0.1),
-    rung('fast', 10, 0.1),
-    rung('broken', 1, null),
+  const configurations = [
+    configuration('slow', 20, 0.1),
+    configuration('fast', 10, 0.1),
+    configuration('broken', 1, null),
     { name: 'empty' },
   ];
-  assert.equal(pickRung(rungs, 33).best.name, 'fast');
-  assert.deepEqual(pickRung([{ name: 'empty' }], 33), { best: null, fastest: null });
+  assert.equal(pickConfiguration(configurations, 33).best.name, 'fast');
+  assert.deepEqual(pickConfiguration([{ name: 'empty' }], 33), { best: null, fastest: null });
 });
 
 const pose = { eye: [0, 1, 4], target: [0, 1, 0], up: [0, 1, 0], fov_y_rad: 0.7 };
@@ -65,7 +67,7 @@ test('a pose is the same in single precision and with another target ahead', () 
   assert.ok(isSamePose(pose, { ...pose, target: [0, 1, 3], up: [0, 2, 0.5] }));
 });
 
-test('a pose is another one by a pixel of place, direction, roll or lens', () => {
+test('a pose is another one by a pixel of position, direction, roll or lens', () => {
   assert.ok(!isSamePose(pose, { ...pose, eye: [0.005, 1, 4], target: [0.005, 1, 0] }));
   assert.ok(!isSamePose(pose, { ...pose, target: [0.005, 1, 0] }));
   assert.ok(!isSamePose(pose, { ...pose, up: [0.002, 1, 0] }));
@@ -131,7 +133,7 @@ async function begin({ server, measurement }, id = 'a1', revision = 40) {
   await settle();
 }
 
-test('results are read after each rung, and only those of the newest measurement', async () => {
+test('results are read after each configuration, those of the newest measurement', async () => {
   const both = makeMeasurement();
   const { server, measurement } = both;
   await begin(both);
@@ -139,11 +141,11 @@ test('results are read after each rung, and only those of the newest measurement
   server.files.set('http://host/at/accuracy/a1/results.json', { rungs: [{ name: 'live' }] });
   measurement.takeProgress({ measurement: 'a1', state: 'rungs', done: 1, rung_count: 6 });
   await settle();
-  assert.equal(measurement.rung('live').name, 'live');
+  assert.equal(measurement.configuration('live').name, 'live');
   assert.ok(measurement.hasReference);
   assert.equal(measurement.url('live-error.png'), 'http://host/at/accuracy/a1/live-error.png');
   await begin(both, 'b2');
-  assert.deepEqual(measurement.rungs, []);
+  assert.deepEqual(measurement.configurations, []);
   measurement.takeProgress({ measurement: 'a1', state: 'done', done: 6, rung_count: 6 });
   assert.equal(measurement.progress.state, 'queued');
   assert.ok(measurement.isRunning);

@@ -49,8 +49,8 @@ test('projects points to where they are seen', () => {
 
 test('a ray through a projected point meets it', () => {
   for (const point of [[0, 0, 0], [-2, 1, 1], [0.3, -1, 3]]) {
-    const place = projectPoint(TILTED, 16 / 9, point);
-    const ray = rayThrough(TILTED, 16 / 9, place.x, place.y);
+    const position = projectPoint(TILTED, 16 / 9, point);
+    const ray = rayThrough(TILTED, 16 / 9, position.x, position.y);
     const reach = length(subtract(point, TILTED.eye));
     near(add(ray.origin, scale(ray.direction, reach)), point, 1e-9);
   }
@@ -167,8 +167,8 @@ test('framing shows all of a ball', () => {
     const ahead = subtract(target, eye);
     const side = [-ahead[2], 0, ahead[0]];
     const edge = add(target, scale(side, 1.99 / length(side)));
-    const place = projectPoint(camera.pose, aspect, edge);
-    assert.ok(place.x > 0 && place.x < 1, `aspect ${aspect}: ${place.x}`);
+    const position = projectPoint(camera.pose, aspect, edge);
+    assert.ok(position.x > 0 && position.x < 1, `aspect ${aspect}: ${position.x}`);
   }
 });
 

@@ -17,7 +17,7 @@ const source = (name) => fileURLToPath(new URL(`../../web_client/report/${name}`
 const metrics = (flip, ssim, red) => ({ rmse: flip / 2, energy_red: red, ssim, ldr_flip: flip });
 
 /** An entry of results.json. */
-function rung(name, method, ms, flip, ssim, red) {
+function configuration(name, method, ms, flip, ssim, red) {
   return {
     name,
     method,
@@ -54,10 +54,10 @@ const results = {
     { name: 'not_finite', title: 'pixels not finite', unit: '' },
   ],
   rungs: [
-    rung('none', 'none', 1, 0.5, 0.5, 0.7),
-    rung('good', 'grid', 10, 0.1, 0.9, 1.2),
-    rung('worse', 'grid', 20, 0.2, 0.95, 0.9),
-    rung('best', 'clipmap', 100, 0.05, 0.99, 1),
+    configuration('none', 'none', 1, 0.5, 0.5, 0.7),
+    configuration('good', 'grid', 10, 0.1, 0.9, 1.2),
+    configuration('worse', 'grid', 20, 0.2, 0.95, 0.9),
+    configuration('best', 'clipmap', 100, 0.05, 0.99, 1),
   ],
   noise: {
     metrics: { ldr_flip: { reference: 0.07, smallest: 0.05, enough: false } },
@@ -87,14 +87,14 @@ describe('the report of an accuracy run', () => {
 
   const onFront = () => page.locator('tr.on-front td:first-child').allInnerTexts();
 
-  test('draws each rung where its time and error are', async () => {
+  test('draws each configuration where its time and error are', async () => {
     assert.equal(await page.locator('.point').count(), 4);
-    const places = await page
+    const positions = await page
       .locator('.point')
       .evaluateAll((marks) =>
         marks.map((mark) => [Number(mark.getAttribute('cx')), Number(mark.getAttribute('cy'))]),
       );
-    const [none, good, worse, best] = places;
+    const [none, good, worse, best] = positions;
     assert.ok(none[0] < good[0] && good[0] < worse[0] && worse[0] < best[0]);
     assert.ok(none[1] < worse[1] && worse[1] < good[1] && good[1] < best[1]);
     // Ten times the time is the same distance anywhere on the axis.
@@ -137,7 +137,7 @@ describe('the report of an accuracy run', () => {
     assert.match(await strip.innerText(), /voxelize 7, gbuffer 2\./);
   });
 
-  test('tells what the truth errs by itself', async () => {
+  test('tells what the reference errs by itself', async () => {
     assert.match(
       await page.locator('#noise').innerText(),
       /errs by 0\.07; .* 0\.05\. .*more samples/,

@@ -137,7 +137,7 @@ describe('one daemon', () => {
     assert.equal(frame.headerSize, 104);
     assert.equal(frame.jpegBytes, frame.jpeg.length);
     assert.equal(frame.jpeg.readUInt16BE(0), 0xffd8);
-    await client.untilStill(1000);
+    await client.untilAtRest(1000);
     const count = client.frames.length;
     const notes = client.notifications.length;
     await sleep(1500);
@@ -158,7 +158,7 @@ describe('one daemon', () => {
       () => client.frames.find((f) => f.width === 64 && f.cameraRevision === 1),
       'the camera in a frame',
     );
-    await client.untilStill(1000);
+    await client.untilAtRest(1000);
     const count = client.frames.length;
     await client.call('camera.set', { ...pose, revision: 2 });
     const told = await client.until(

@@ -126,7 +126,7 @@ describe('accuracy', () => {
     await client.close();
   });
 
-  test('measures the reference and every rung', async () => {
+  test('measures the reference and every configuration', async () => {
     const client = await arrive(daemon);
     const { measurement: id, epoch, revision, ...facts } = await start(client, { noise: 0.1 });
     assert.match(id, /^[0-9a-f]{32}$/);
@@ -137,7 +137,7 @@ describe('accuracy', () => {
     await heard(client, id, inState('reference'), 'the reference');
     const edit = await client.call('light.add', { set: { type: 'point', intensity: 5 } });
     assert.ok(edit.result);
-    const first = await heard(client, id, ({ done }) => done === 1, 'the first rung');
+    const first = await heard(client, id, ({ done }) => done === 1, 'the first configuration');
     const early = await get(daemon, id, 'results.json');
     assert.equal(early.headers.get('cache-control'), 'no-store');
     assert.equal((await early.json()).rungs[0].name, 'live');
@@ -171,7 +171,7 @@ describe('accuracy', () => {
       }
     }
     const flip = (name) =>
-      results.rungs.find((rung) => rung.name === name).converged.metrics.ldr_flip;
+      results.rungs.find((configuration) => configuration.name === name).converged.metrics.ldr_flip;
     assert.ok(
       flip('live') < 0.5 * flip('none'),
       `${flip('live')} against ${flip('none')} without indirect light`,
@@ -189,7 +189,7 @@ describe('accuracy', () => {
   test('serves what it has measured and nothing else', async () => {
     const client = await arrive(daemon);
     const { measurement: id } = await start(client, { noise: 0.1 });
-    await heard(client, id, ({ done }) => done >= 1, 'a rung');
+    await heard(client, id, ({ done }) => done >= 1, 'a configuration');
     assert.match(await rawStatus(daemon.port, `/accuracy/${id}/reference.png`), / 200/);
     const other = id.replace(/./g, (digit) => (digit === '0' ? '1' : '0'));
     for (const path of [
@@ -231,21 +231,26 @@ describe('accuracy', () => {
     const measured = await start(client, { noise: 0.1, ladder: 'full' });
     assert.equal(measured.rung_count, 53); // the live one and those of the sweep
     await client.until(() => folders().length === 1, 'the folder of the old one is gone');
-    await heard(client, measured.measurement, ({ done }) => done === 1, 'a rung');
+    await heard(client, measured.measurement, ({ done }) => done === 1, 'a configuration');
     await client.call('accuracy.cancel', {});
     const end = await heard(
       client,
       measured.measurement,
       inState(...OVER),
-      'the end while rungs are measured',
+      'the end while configurations are measured',
     );
     assert.equal(end.state, 'cancelled');
     const results = await (await get(daemon, measured.measurement, 'results.json')).json();
     assert.equal(results.rungs.length, end.done, 'what has been measured stays');
-    assert.ok(results.rungs.every(({ edit }) => !edit.error), 'no rung is there in part');
+    assert.ok(results.rungs.every(({ edit }) => !edit.error), 'no configuration is there in part');
     // Where noise does not fall in time, the reference image is used as it is.
     const hasty = await start(client, { noise: 0.0005, seconds: 1 });
-    const noisy = await heard(client, hasty.measurement, inState('rungs'), 'rungs after a second');
+    const noisy = await heard(
+      client,
+      hasty.measurement,
+      inState('rungs'),
+      'configurations after a second',
+    );
     assert.ok(noisy.noise > 0.0005, `noise ${noisy.noise}`);
     // Many requests at once leave one measurement.
     const replies = await Promise.all(
@@ -266,7 +271,12 @@ describe('accuracy', () => {
     await client.close();
     await heard(second, last.measurement, inState('reference'), 'the turn of the second');
     await second.until(() => folders().length === 1, 'the folder of the client that left is gone');
-    await heard(second, last.measurement, ({ done }) => done === 1, 'a rung of the second');
+    await heard(
+      second,
+      last.measurement,
+      ({ done }) => done === 1,
+      'a configuration of the second',
+    );
     await second.close();
     const third = await arrive(daemon);
     await third.until(() => folders().length === 0, 'no folder is left');
@@ -281,7 +291,7 @@ describe('accuracy', () => {
     const times = {
       alone: [],
       'while the reference is traced': [],
-      'while rungs are measured': [],
+      'while configurations are measured': [],
     };
     let pictures = [],
       revision = 0;
@@ -313,17 +323,17 @@ describe('accuracy', () => {
     for (let i = 0; i < 3; i++) await check('while the reference is traced');
     await client.call('accuracy.cancel', {});
     const second = await start(client, { noise: 0.1, ladder: 'full' });
-    await heard(client, second.measurement, inState('rungs'), 'rungs');
-    for (let i = 0; i < 6; i++) await check('while rungs are measured');
+    await heard(client, second.measurement, inState('rungs'), 'configurations');
+    for (let i = 0; i < 6; i++) await check('while configurations are measured');
     assert.ok(
       !progress(client, second.measurement).some(inState(...OVER)),
-      'rungs are still being measured',
+      'configurations are still being measured',
     );
     await client.call('accuracy.cancel', {});
     await heard(client, second.measurement, inState('cancelled'), 'the end');
     await check('after');
     // Configurations of other rows, methods, voxels, bounces, sizes.
-    for (const rung of [
+    for (const configuration of [
       'none',
       'draft',
       'final',
@@ -333,10 +343,10 @@ describe('accuracy', () => {
       '',
     ]) {
       const from = client.frames.length;
-      await client.call('view.configure', { rung });
-      await check(`beside rung ${rung}`);
+      await client.call('view.configure', { rung: configuration });
+      await check(`beside configuration ${configuration}`);
       await settled(client, from);
-      await check(`after rung ${rung}`);
+      await check(`after configuration ${configuration}`);
     }
     for (const [when, list] of Object.entries(times)) {
       list.sort((a, b) => a - b);
@@ -350,12 +360,12 @@ describe('accuracy', () => {
     await other.close();
   });
 
-  test('draws one view by a rung', async () => {
+  test('draws one view by a configuration', async () => {
     const client = await arrive(daemon, { quality: 'interactive' });
     const other = await arrive(daemon);
     const plain = client.frames.at(-1).jpeg, others = other.frames.length;
     const { measurement: id } = await start(client, { noise: 0.1, ladder: 'full' });
-    const rung = async (name) => {
+    const drawWith = async (name) => {
       const from = client.frames.length;
       const { result, error } = await client.call('view.configure', { rung: name });
       assert.equal(result?.rung, name, JSON.stringify(error));
@@ -363,11 +373,14 @@ describe('accuracy', () => {
     };
     await client.call('accuracy.cancel', {});
     await heard(client, id, inState('cancelled'), 'the end');
-    const none = await rung('none');
+    const none = await drawWith('none');
     assert.ok(!none.jpeg.equals(plain), 'without indirect light it looks different');
-    const half = await rung('grid-scale-0.5');
+    const half = await drawWith('grid-scale-0.5');
     assert.deepEqual([half.width, half.height], [32, 18]);
-    assert.ok((await rung('live')).jpeg.equals(plain), 'the live rung is what was there');
+    assert.ok(
+      (await drawWith('live')).jpeg.equals(plain),
+      'the live configuration is what was there',
+    );
     const bad = await client.call('view.configure', { rung: 'best', width: 32 });
     assert.equal(bad.error?.data.field, 'rung');
     assert.match(bad.error.message, /no rung "best"; measured are live, none, draft/);
@@ -377,7 +390,7 @@ describe('accuracy', () => {
       'nothing of it was set',
     );
     // Edits of shared settings take effect if they are about how images are displayed.
-    await rung('draft');
+    await drawWith('draft');
     let from = client.frames.length;
     await client.call('settings.update', { set: { exposure_ev: 1 } });
     await settled(client, from);
@@ -390,9 +403,9 @@ describe('accuracy', () => {
     );
     from = client.frames.length;
     await client.call('accuracy.cancel', {});
-    await rung('none');
-    assert.ok((await rung('')).jpeg.equals(plain), 'back to what was there');
-    await rung('none');
+    await drawWith('none');
+    assert.ok((await drawWith('')).jpeg.equals(plain), 'back to what was there');
+    await drawWith('none');
     const loaded = await client.call('scene.load', { source: 'builtin:furnace' });
     assert.ok(loaded.result, JSON.stringify(loaded.error));
     assert.equal(

@@ -63,7 +63,7 @@ async function restingFrame(client) {
     () => client.frames.some((f) => f.sceneRevision >= revision && f.converged),
     'a resting frame',
   );
-  await client.untilStill(500);
+  await client.untilAtRest(500);
   return client.frames.at(-1).jpeg;
 }
 

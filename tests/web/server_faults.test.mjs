@@ -196,10 +196,10 @@ describe('clients at fault', () => {
     const bytes = JSON.stringify(document).length;
     // Enough replies to fill the daemon's queue and the sockets. The test does not read, so it
     // learns from the daemon's log that the connection was closed.
-    const most = (MAX_QUEUED_BYTES + SOCKET_BYTES) / bytes;
+    const maxSent = (MAX_QUEUED_BYTES + SOCKET_BYTES) / bytes;
     const before = daemon.log.length;
     const told = (what) => daemon.log.slice(before).includes(what);
-    for (let sent = 0; sent < most && !told('code=4413'); sent++) {
+    for (let sent = 0; sent < maxSent && !told('code=4413'); sent++) {
       raw.socket.write(frame(message('scene.get', {}, sent)));
       if (sent % 60 === 0) await sleep(20);
       if (sent % 300 === 0) await checkOthers('a client that does not read');

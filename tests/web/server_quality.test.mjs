@@ -127,7 +127,7 @@ describe('quality', () => {
     await client.until(() => client.frames.length > first + 3, 'several frames of one state');
     await client.call('view.configure', {});
     assert.ok(!client.frames.at(-1).converged, 'a command does not wait for the picture');
-    await client.untilStill(1500);
+    await client.untilAtRest(1500);
     const frames = client.frames.slice(first);
     assert.ok(
       frames.at(-1).convergence > 0.9,
@@ -147,11 +147,11 @@ describe('quality', () => {
       while (isMoving) await move(mover, 1, 20);
     })();
     await sleep(300);
-    const still = await hello(daemon);
-    await converged(still, FINAL);
+    const resting = await hello(daemon);
+    await converged(resting, FINAL);
     isMoving = false;
     await moving;
     assert.ok(mover.frames.length > 5);
-    await Promise.all([mover.close(), still.close()]);
+    await Promise.all([mover.close(), resting.close()]);
   });
 });

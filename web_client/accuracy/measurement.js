@@ -50,13 +50,13 @@ export class Measurement extends EventTarget {
   }
 
   /** @returns {any[]} entries of results.json */
-  get rungs() {
+  get configurations() {
     return this.results?.rungs ?? [];
   }
 
   /** @param {string} name */
-  rung(name) {
-    return this.rungs.find((rung) => rung.name === name) ?? null;
+  configuration(name) {
+    return this.configurations.find((configuration) => configuration.name === name) ?? null;
   }
 
   /** The address of one of the measurement's files. @param {string} file */

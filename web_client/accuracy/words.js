@@ -13,8 +13,8 @@ export function msText(ms) {
   return `${ms < 10 ? ms.toFixed(1) : ms.toFixed(0)} ms`;
 }
 
-/** Of a fraction: "3.1 %". @param {number} share */
-export const percentText = (share) => `${Number((100 * share).toPrecision(2))} %`;
+/** Of a fraction: "3.1 %". @param {number} fraction */
+export const percentText = (fraction) => `${Number((100 * fraction).toPrecision(2))} %`;
 
 /** The name of a configuration for people. @param {string} name */
-export const rungTitle = (name) => (name === 'live' ? 'own settings as measured' : name);
+export const configurationTitle = (name) => (name === 'live' ? 'own settings as measured' : name);

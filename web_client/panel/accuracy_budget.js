@@ -1,5 +1,5 @@
-import { BUDGETS, pickRung } from '../accuracy/budget.js';
-import { msText, rungTitle } from '../accuracy/words.js';
+import { BUDGETS, pickConfiguration } from '../accuracy/budget.js';
+import { msText, configurationTitle } from '../accuracy/words.js';
 import { element } from '../ui/element.js';
 import { errorChart } from './error_chart.js';
 
@@ -35,7 +35,7 @@ export class AccuracyBudget {
     this.marks = element('div', { class: 'budget-marks', 'aria-hidden': 'true' });
     this.marks.append(
       ...BUDGETS.map(({ name }, i) =>
-        element('span', { style: `--place:${i / (BUDGETS.length - 1)}` }, name),
+        element('span', { style: `--position:${i / (BUDGETS.length - 1)}` }, name),
       ),
     );
     this.text = element('p', { class: 'budget-text' });
@@ -62,11 +62,11 @@ export class AccuracyBudget {
   refresh() {
     const { measurement, view } = this.app;
     const { name, ms } = BUDGETS[this.slider.valueAsNumber];
-    const { best, fastest } = pickRung(measurement.rungs, ms);
+    const { best, fastest } = pickConfiguration(measurement.configurations, ms);
     this.pick = best;
     this.slider.disabled = !fastest;
     this.text.classList.toggle('hint', !fastest);
-    this.use.hidden = !best || view.rung === best.name;
+    this.use.hidden = !best || view.configuration === best.name;
     this.text.textContent = fastest ? describePick(name, best, fastest) : this.#describeNothing();
     this.slider.setAttribute('aria-valuetext', best ? `${name}: ${best.name}` : name);
     [...this.marks.children].forEach((mark, i) =>
@@ -82,8 +82,8 @@ export class AccuracyBudget {
   }
 }
 
-const errorText = (/** @type {any} */ rung) =>
-  `LDR-FLIP ${errorChart.short(rung.converged.metrics.ldr_flip)}`;
+const errorText = (/** @type {any} */ configuration) =>
+  `LDR-FLIP ${errorChart.short(configuration.converged.metrics.ldr_flip)}`;
 
 function describePick(
   /** @type {string} */ name,
@@ -92,13 +92,13 @@ function describePick(
 ) {
   if (!best)
     return (
-      `Nothing measured keeps ${name}: the fastest, ${rungTitle(fastest.name)}, takes ` +
+      `Nothing measured keeps ${name}: the fastest, ${configurationTitle(fastest.name)}, takes ` +
       `${msText(fastest.frame_ms.median)} a frame (${errorText(fastest)}).`
     );
-  const still = `, ${msText(best.converged.ms)} to the final picture`;
+  const untilFinal = `, ${msText(best.converged.ms)} to the final picture`;
   const budget = name === 'still' ? 'When time does not matter' : `Within ${name}`;
   return (
-    `${budget}: ${rungTitle(best.name)}, ${errorText(best)}, ${msText(best.frame_ms.median)} a ` +
-    `frame${still}.`
+    `${budget}: ${configurationTitle(best.name)}, ${errorText(best)}, ` +
+    `${msText(best.frame_ms.median)} a frame${untilFinal}.`
   );
 }

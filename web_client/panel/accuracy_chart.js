@@ -1,4 +1,4 @@
-import { msText, rungTitle } from '../accuracy/words.js';
+import { msText, configurationTitle } from '../accuracy/words.js';
 import { element } from '../ui/element.js';
 import { errorChart, ErrorChartView } from './error_chart.js';
 import { makeSection } from './sections.js';
@@ -38,20 +38,20 @@ export class AccuracyChart {
       onShow: (/** @type {any} */ point, /** @type {SVGElement} */ mark) =>
         this.#showTip(point, mark),
       onHide: () => (this.tip.hidden = true),
-      onChoose: (/** @type {any} */ { rung }) => options.onChoose(rung.name),
+      onChoose: (/** @type {any} */ { configuration }) => options.onChoose(configuration.name),
     });
     new ResizeObserver(() => this.refresh()).observe(this.figure);
   }
 
   refresh() {
     const { results } = this.app.measurement;
-    const hasRungs = this.app.measurement.rungs.length > 0;
-    this.empty.hidden = hasRungs;
+    const hasConfigurations = this.app.measurement.configurations.length > 0;
+    this.empty.hidden = hasConfigurations;
     for (const part of [this.figure, this.legend, this.noise, this.section.domElement])
-      part.hidden = !hasRungs;
-    if (!hasRungs) this.tip.hidden = true;
+      part.hidden = !hasConfigurations;
+    if (!hasConfigurations) this.tip.hidden = true;
     const width = this.figure.clientWidth;
-    if (!hasRungs || width < 2) return;
+    if (!hasConfigurations || width < 2) return;
     this.#fillMetrics(results);
     const budgetMs = this.options.getBudgetMs();
     this.view.draw({
@@ -60,7 +60,7 @@ export class AccuracyChart {
       width,
       height: HEIGHT_PX,
       live: 'live',
-      chosen: this.app.view.rung || undefined,
+      chosen: this.app.view.configuration || undefined,
       budgetMs: Number.isFinite(budgetMs) ? budgetMs : 0,
       isNarrow: true,
       labels: 'marked',
@@ -123,48 +123,50 @@ export class AccuracyChart {
     );
   }
 
-  #showTip(/** @type {any} */ { rung, ms }, /** @type {SVGElement} */ mark) {
+  #showTip(/** @type {any} */ { configuration, ms }, /** @type {SVGElement} */ mark) {
     const title = this.app.measurement.results.metrics.find(
       (/** @type {any} */ row) => row.name === this.choice.metric,
     )?.title;
     const figures = [
-      [title, errorChart.short(errorChart.valueOf(rung, this.choice))],
+      [title, errorChart.short(errorChart.valueOf(configuration, this.choice))],
       [errorChart.TIMES[this.choice.time].short.replace(/, ms$/, ''), msText(ms)],
-      ['memory', `${(rung.memory_bytes / 1048576).toFixed(0)} MiB`],
+      ['memory', `${(configuration.memory_bytes / 1048576).toFixed(0)} MiB`],
     ];
     this.tip.replaceChildren(
-      element('b', {}, rungTitle(rung.name)),
-      element('small', {}, errorChart.settingText(rung)),
+      element('b', {}, configurationTitle(configuration.name)),
+      element('small', {}, errorChart.settingText(configuration)),
       element(
         'dl',
         { class: 'info' },
         ...figures.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]),
       ),
-      this.#makePicture(rung),
+      this.#makePicture(configuration),
     );
     this.tip.hidden = false;
     mark.setAttribute('aria-describedby', TIP_ID);
-    this.#placeTip(mark);
+    this.#positionTip(mark);
   }
 
   /**
    * The final image, or the strip, which includes the first one. Its size is set before it has
    * loaded.
    */
-  #makePicture(/** @type {any} */ rung) {
+  #makePicture(/** @type {any} */ configuration) {
     const { width, height } = this.app.measurement.results.setup.scene;
     const isCold = this.choice.state === 'cold';
     return element('img', {
-      src: this.app.measurement.url(isCold ? rung.pictures.strip : rung.pictures.converged),
+      src: this.app.measurement.url(
+        isCold ? configuration.pictures.strip : configuration.pictures.converged,
+      ),
       alt:
         `${isCold ? 'Reference image, first and final picture and error' : 'Final picture'} of ` +
-        `${rung.name}`,
+        `${configuration.name}`,
       style: `aspect-ratio:${isCold ? 4 * width : width}/${height}`,
     });
   }
 
   /** Beside the panel, or above it where the panel is a sheet: never over the chart. */
-  #placeTip(/** @type {SVGElement} */ mark) {
+  #positionTip(/** @type {SVGElement} */ mark) {
     const panel = /** @type {HTMLElement} */ (
       this.figure.closest('.panel') ?? this.figure
     ).getBoundingClientRect();

@@ -50,16 +50,16 @@ export class AccuracyCompare {
 
   refresh() {
     const { measurement } = this.app;
-    const hasTruth = measurement.hasReference && this.measuredView !== null;
-    const shown = this.#errorRung();
-    this.inputs[1].disabled = !hasTruth;
+    const hasReference = measurement.hasReference && this.measuredView !== null;
+    const shown = this.#errorConfiguration();
+    this.inputs[1].disabled = !hasReference;
     this.inputs[2].disabled = !shown;
     if (this.inputs.find((input) => input.value === this.mode)?.disabled) this.mode = 'none';
     for (const input of this.inputs) input.checked = input.value === this.mode;
-    this.text.textContent = this.#describe(hasTruth, shown);
+    this.text.textContent = this.#describe(hasReference, shown);
     this.app.comparison.show({
       mode: /** @type {any} */ (this.mode),
-      truthUrl: hasTruth ? measurement.url('reference.png') : '',
+      referenceUrl: hasReference ? measurement.url('reference.png') : '',
       errorUrl: shown ? measurement.url(shown.pictures.error) : '',
       errorName: shown?.name ?? '',
       obstacle: this.mode === 'none' ? '' : this.#obstacle(),
@@ -69,9 +69,13 @@ export class AccuracyCompare {
   /**
    * Whose errors are shown: those of the configuration that draws, or of the client's own settings.
    */
-  #errorRung() {
+  #errorConfiguration() {
     const { measurement, view } = this.app;
-    return measurement.rung(view.rung || 'live') ?? measurement.rungs[0] ?? null;
+    return (
+      measurement.configuration(view.configuration || 'live') ??
+      measurement.configurations[0] ??
+      null
+    );
   }
 
   /**
@@ -92,8 +96,8 @@ export class AccuracyCompare {
     if (this.mode !== 'none' && this.shape !== canvas.width / canvas.height) this.refresh();
   }
 
-  #describe(/** @type {boolean} */ hasTruth, /** @type {any} */ shown) {
-    if (!hasTruth)
+  #describe(/** @type {boolean} */ hasReference, /** @type {any} */ shown) {
+    if (!hasReference)
       return this.app.measurement.isRunning
         ? 'The reference image can be laid beside the picture once the first setting has been ' +
             'measured.'

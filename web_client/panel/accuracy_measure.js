@@ -3,23 +3,23 @@ import { element } from '../ui/element.js';
 import { makeSection } from './sections.js';
 
 /** The server's range for the wanted noise, in percent. */
-const NOISE = { least: 0.05, most: 10, step: 0.05 };
+const NOISE = { min: 0.05, max: 10, step: 0.05 };
 /** How long it may take, in seconds. */
 const TIMES = { '20 s': 20, '1 min': 60, '2 min': 120, '5 min': 300, '20 min': 1200, '1 h': 3600 };
-const LADDERS = { 'Quick: the presets': 'quick', 'Full: each setting': 'full' };
+const SWEEPS = { 'Quick: the presets': 'quick', 'Full: each setting': 'full' };
 
 /** The form that starts a measurement of the view, and its progress. */
 export class AccuracyMeasure {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
   constructor(root, app) {
     this.app = app;
-    this.choice = { ladder: 'quick', noise: 1, seconds: 120 };
+    this.choice = { sweep: 'quick', noise: 1, seconds: 120 };
     const gui = makeSection(root, 'Measurement');
-    const ladder = gui.add(this.choice, 'ladder', LADDERS).name('Settings');
-    ladder.domElement.title =
+    const sweep = gui.add(this.choice, 'sweep', SWEEPS).name('Settings');
+    sweep.domElement.title =
       'Which settings are measured: a few presets, or all that differ in one thing.';
     const noise = gui
-      .add(this.choice, 'noise', NOISE.least, NOISE.most, NOISE.step)
+      .add(this.choice, 'noise', NOISE.min, NOISE.max, NOISE.step)
       .name('Noise of the reference (%)');
     noise.domElement.title =
       'The reference image is traced until its pixels err by no more than this. Less takes ' +
@@ -69,12 +69,12 @@ export class AccuracyMeasure {
 
   async #start() {
     this.begin.disabled = true;
-    const { ladder, noise, seconds } = this.choice;
+    const { sweep, noise, seconds } = this.choice;
     try {
       // The image must not follow the measurement that this one replaces.
-      if (this.app.view.rung) await this.app.view.chooseRung('');
+      if (this.app.view.configuration) await this.app.view.chooseConfiguration('');
       await this.app.measurement.start({
-        ladder,
+        ladder: sweep,
         noise: Number((noise / 100).toPrecision(6)),
         seconds,
       });

@@ -54,15 +54,17 @@ export class AccuracyTab {
       this.compare.refresh();
     });
     this.edits.addEventListener('changed', () => this.#showEdits());
-    view.addEventListener('rung', () => this.refresh());
+    view.addEventListener('configuration', () => this.refresh());
     this.refresh();
   }
 
   refresh() {
-    const { rung } = this.app.view;
-    this.drawnWith.textContent = rung ? `Drawn with ${rung}` : 'Drawn with your own settings';
-    this.back.hidden = !rung;
-    this.drawn.hidden = this.app.measurement.rungs.length === 0;
+    const { configuration } = this.app.view;
+    this.drawnWith.textContent = configuration
+      ? `Drawn with ${configuration}`
+      : 'Drawn with your own settings';
+    this.back.hidden = !configuration;
+    this.drawn.hidden = this.app.measurement.configurations.length === 0;
     this.chart.refresh();
     this.budget.refresh();
     this.compare.refresh();
@@ -77,7 +79,7 @@ export class AccuracyTab {
 
   async #draw(/** @type {string} */ name) {
     try {
-      await this.app.view.chooseRung(name);
+      await this.app.view.chooseConfiguration(name);
     } catch (error) {
       this.app.toasts.showError(/** @type {any} */ (error));
     }

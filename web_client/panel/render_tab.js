@@ -28,7 +28,7 @@ export class RenderTab {
     this.effects = makeEffectList();
     this.noEffects = element('p', { class: 'hint' }, 'The first frame will tell.');
     this.measured = element('p', { class: 'note', hidden: true });
-    app.view.addEventListener('rung', () => this.#showRung());
+    app.view.addEventListener('configuration', () => this.#showConfiguration());
     root.append(
       element('h2', {}, 'Rendering'),
       this.measured,
@@ -77,12 +77,12 @@ export class RenderTab {
   }
 
   /** The settings of this tab have no effect while a measured configuration draws. */
-  #showRung() {
-    const { rung } = this.app.view;
-    this.measured.hidden = rung === '';
+  #showConfiguration() {
+    const { configuration } = this.app.view;
+    this.measured.hidden = configuration === '';
     this.measured.textContent =
-      `This view is drawn with ${rung}, as chosen in the tab of accuracy. What is set here ` +
-      'shows when it goes back to its own settings.';
+      `This view is drawn with ${configuration}, as chosen in the tab of accuracy. What is set ` +
+      'here shows when it goes back to its own settings.';
   }
 
   /** @param {any} stats a notification of the server */

@@ -6,7 +6,7 @@ import { addParameterControls } from './parameter_controls.js';
 import { SceneLoader } from './scene_loader.js';
 import { makeSection } from './sections.js';
 
-const places = (/** @type {number[]} */ vector) => vector.map((v) => v.toFixed(3)).join(', ');
+const vectorText = (/** @type {number[]} */ vector) => vector.map((v) => v.toFixed(3)).join(', ');
 
 const counted = (/** @type {number} */ count, /** @type {string} */ noun) =>
   `${count.toLocaleString('en')} ${noun}${count === 1 ? '' : 's'}`;
@@ -17,13 +17,13 @@ export class SceneTab {
   constructor(root, app) {
     this.app = app;
     this.loader = new SceneLoader(app);
-    const tree = element('div', {
+    const sceneTree = element('div', {
       class: 'tree',
       role: 'tree',
       tabindex: 0,
       'aria-label': 'Scene nodes',
     });
-    this.tree = new SceneTree(tree, {
+    this.sceneTree = new SceneTree(sceneTree, {
       onChoose: (nodeId) => this.#choose(nodeId),
       onShow: (nodeId, visible) => app.editor.update('node', nodeId, { visible }, false),
     });
@@ -35,7 +35,7 @@ export class SceneTab {
     root.append(
       element('h2', {}, 'Scene'),
       this.loader.root,
-      tree,
+      sceneTree,
       this.counts,
       this.info,
       this.chosen,
@@ -57,7 +57,7 @@ export class SceneTab {
       counted(materials.length, 'material'),
       counted(lights.length, 'light'),
     ].join(' · ');
-    this.tree.show(data.nodes);
+    this.sceneTree.show(data.nodes);
     this.loader.showSource(data.source);
     this.#drawCameras();
     this.animations.rebuild();
@@ -69,7 +69,7 @@ export class SceneTab {
     const { app } = this;
     const { nodeId, hit } = app.selection;
     const node = app.document.find('node', nodeId ?? undefined);
-    this.tree.choose(nodeId);
+    this.sceneTree.choose(nodeId);
     this.#drawInfo(hit);
     this.chosen.replaceChildren();
     this.controls = null;
@@ -80,7 +80,7 @@ export class SceneTab {
 
   /** @param {number} [id] */
   refresh(id) {
-    this.tree.show(this.app.document.data.nodes);
+    this.sceneTree.show(this.app.document.data.nodes);
     if (id === this.app.selection.nodeId) this.controls?.refresh();
   }
 
@@ -99,8 +99,8 @@ export class SceneTab {
     if (!hit) return;
     const material = this.app.document.find('material', hit.material);
     const rows = [
-      ['Position', `${places(hit.position)} m`],
-      ['Normal', places(hit.normal)],
+      ['Position', `${vectorText(hit.position)} m`],
+      ['Normal', vectorText(hit.normal)],
       ['Material', material?.name || String(hit.material)],
       ['Distance', `${hit.distance.toFixed(3)} m`],
     ];

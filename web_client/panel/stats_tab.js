@@ -151,7 +151,7 @@ export class StatsTab {
     /** @type {{name: string, value: number, off?: boolean, reason?: string}[]} */ rows,
     /** @type {(value: number) => string} */ format,
   ) {
-    const most = Math.max(...rows.map((row) => row.value), 1e-9);
+    const max = Math.max(...rows.map((row) => row.value), 1e-9);
     list.replaceChildren(
       ...rows.map(({ name, value, off, reason }) =>
         element(
@@ -164,7 +164,7 @@ export class StatsTab {
                 element(
                   'span',
                   { class: 'bar' },
-                  element('span', { style: `width:${(100 * value) / most}%` }),
+                  element('span', { style: `width:${(100 * value) / max}%` }),
                 ),
                 element('small', {}, format(value)),
               ]),

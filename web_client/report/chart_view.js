@@ -38,8 +38,9 @@ globalThis.ErrorChartView = class {
     }
     this.#marks.sort((a, b) => a.point.ms - b.point.ms);
     const current =
-      this.#marks.find(({ point }) => point.rung.name === this.#current) ?? this.#marks[0];
-    if (current) this.#moveTo(current, focused !== '' && focused === current.point.rung.name);
+      this.#marks.find(({ point }) => point.configuration.name === this.#current) ?? this.#marks[0];
+    if (current)
+      this.#moveTo(current, focused !== '' && focused === current.point.configuration.name);
   }
 
   #make(parent, { tag, attributes, text }) {
@@ -55,7 +56,7 @@ globalThis.ErrorChartView = class {
     const mark = this.#make(group, shape);
     mark.setAttribute('role', 'option');
     mark.setAttribute('tabindex', '-1');
-    mark.setAttribute('aria-selected', String(point.rung.name === chosen));
+    mark.setAttribute('aria-selected', String(point.configuration.name === chosen));
     const entry = { mark, point };
     mark.addEventListener('pointerenter', () => this.#options.onShow(point, mark));
     mark.addEventListener('focus', () => {
@@ -72,7 +73,7 @@ globalThis.ErrorChartView = class {
   #moveTo(entry, takesFocus) {
     for (const { mark } of this.#marks)
       mark.setAttribute('tabindex', mark === entry.mark ? '0' : '-1');
-    this.#current = entry.point.rung.name;
+    this.#current = entry.point.configuration.name;
     if (takesFocus) entry.mark.focus();
   }
 

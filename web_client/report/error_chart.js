@@ -6,7 +6,7 @@
 
 /** @typedef {{ name: string, title: string, unit: string }} Metric */
 /** @typedef {{ metric: string, time: string, state: string, part: string }} Choice what is drawn */
-/** @typedef {{ ms: number, error: number, rung: any }} Point */
+/** @typedef {{ ms: number, error: number, configuration: any }} Point */
 /** @typedef {{ left: number, right: number, top: number, bottom: number }} Area */
 /**
  * @typedef {{ tag: string, attributes: Record<string, string | number>, text?: string, point?:
@@ -26,22 +26,22 @@ globalThis.errorChart = (() => {
     frame: {
       title: 'median frame of a moving camera, ms',
       short: 'frame, ms',
-      get: (rung) => rung.frame_ms.median,
+      get: (configuration) => configuration.frame_ms.median,
     },
     cold: {
       title: 'first picture of a scene just loaded, ms',
       short: 'first picture, ms',
-      get: (rung) => rung.cold.ms,
+      get: (configuration) => configuration.cold.ms,
     },
     converged: {
       title: 'from the loaded scene to the final picture, ms',
       short: 'final picture, ms',
-      get: (rung) => rung.converged.ms,
+      get: (configuration) => configuration.converged.ms,
     },
     edit: {
       title: 'from an edit of a light to 95 % of its change, ms',
       short: 'edit of a light, ms',
-      get: (rung) => rung.edit?.arrived_ms,
+      get: (configuration) => configuration.edit?.arrived_ms,
     },
   };
   const STATES = { converged: 'final picture', cold: 'first picture' };
@@ -74,16 +74,16 @@ globalThis.errorChart = (() => {
   const short = (value) => (typeof value === 'number' ? String(Number(value.toPrecision(3))) : '–');
 
   /** The value of a metric of a configuration, as its entry has it. @param {Choice} choice */
-  const valueOf = (rung, choice, metric = choice.metric) =>
-    rung[choice.state]?.[choice.part]?.[metric];
+  const valueOf = (configuration, choice, metric = choice.metric) =>
+    configuration[choice.state]?.[choice.part]?.[metric];
 
   /** @returns {Point[]} what can be drawn on logarithmic axes */
-  function pointsOf(rungs, choice) {
-    return rungs
-      .map((rung) => ({
-        rung,
-        ms: TIMES[choice.time].get(rung),
-        error: errorOf(choice.metric, valueOf(rung, choice)),
+  function pointsOf(configurations, choice) {
+    return configurations
+      .map((configuration) => ({
+        configuration,
+        ms: TIMES[choice.time].get(configuration),
+        error: errorOf(choice.metric, valueOf(configuration, choice)),
       }))
       .filter(({ ms, error }) => ms > 0 && error > 0);
   }
@@ -180,11 +180,11 @@ globalThis.errorChart = (() => {
       const at = { class: 'limit', x: right, y: height - 5, 'text-anchor': 'end' };
       shapes.push({ tag: 'text', attributes: at, text: 'noise of the reference image' });
     }
-    const place = budgetMs > 0 ? x.scale(budgetMs) : NaN;
-    if (place >= left && place <= right)
+    const position = budgetMs > 0 ? x.scale(budgetMs) : NaN;
+    if (position >= left && position <= right)
       shapes.push({
         tag: 'line',
-        attributes: { class: 'budget', x1: place, x2: place, y1: top, y2: bottom },
+        attributes: { class: 'budget', x1: position, x2: position, y1: top, y2: bottom },
       });
     return shapes;
   }
@@ -193,7 +193,7 @@ globalThis.errorChart = (() => {
     a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
   /** Where a name may stand beside a mark: the best position first. */
-  function labelPlaces(text, cx, cy, area) {
+  function labelPositions(text, cx, cy, area) {
     const width = LETTER_WIDTH * text.length;
     const isLeftFirst = cx > area.left + 0.6 * (area.right - area.left);
     const sides = isLeftFirst ? ['end', 'start'] : ['start', 'end'];
@@ -229,18 +229,18 @@ globalThis.errorChart = (() => {
     for (const { point, mustShow } of [...labelled].sort(
       (a, b) => Number(b.mustShow) - Number(a.mustShow),
     )) {
-      const { name } = point.rung;
-      const places = labelPlaces(name, x.scale(point.ms), y.scale(point.error), area);
+      const { name } = point.configuration;
+      const positions = labelPositions(name, x.scale(point.ms), y.scale(point.error), area);
       const fits = ({ left, right, bottom }) =>
         left >= area.left && right <= area.right && bottom <= area.bottom;
-      const place =
-        places.find((one) => fits(one) && !taken.some((other) => meets(one, other))) ??
-        (mustShow ? places[0] : null);
-      if (!place) continue;
-      taken.push(place);
+      const position =
+        positions.find((one) => fits(one) && !taken.some((other) => meets(one, other))) ??
+        (mustShow ? positions[0] : null);
+      if (!position) continue;
+      taken.push(position);
       shapes.push({
         tag: 'text',
-        attributes: { class: 'name', x: place.x, y: place.y, 'text-anchor': place.anchor },
+        attributes: { class: 'name', x: position.x, y: position.y, 'text-anchor': position.anchor },
         text: name,
       });
     }
@@ -248,14 +248,15 @@ globalThis.errorChart = (() => {
   }
 
   function pointShape(point, { x, y }, { isLarge, isLive }) {
+    const { name, method } = point.configuration;
     const attributes = {
       class: isLive ? 'point live' : 'point',
       cx: x.scale(point.ms),
       cy: y.scale(point.error),
       r: isLarge ? MARK_RADIUS : 5,
-      fill: colorOf(point.rung.method),
-      'aria-label': `${point.rung.name}: ${short(point.ms)} ms, error ${short(point.error)}`,
-      'data-rung': point.rung.name,
+      fill: colorOf(method),
+      'aria-label': `${name}: ${short(point.ms)} ms, error ${short(point.error)}`,
+      'data-configuration': name,
     };
     return { tag: 'circle', attributes, point };
   }
@@ -317,7 +318,7 @@ globalThis.errorChart = (() => {
       ...limitShapes(frame, noise, choice.time === 'frame' ? budgetMs : 0),
     ];
     shapes.push({ tag: 'path', attributes: { class: 'front', d: corners.join('') } });
-    const ringOf = ({ rung: { name } }) =>
+    const ringOf = ({ configuration: { name } }) =>
       name === chosen ? 'chosen' : name === live ? 'live' : '';
     // Marked points are drawn on top of the rest.
     const ordered = [...points].sort((a, b) => Number(ringOf(a) !== '') - Number(ringOf(b) !== ''));
@@ -325,7 +326,7 @@ globalThis.errorChart = (() => {
       shapes.push(
         pointShape(point, frame, {
           isLarge: front.includes(point),
-          isLive: point.rung.name === live,
+          isLive: point.configuration.name === live,
         }),
       );
     for (const point of ordered)

@@ -3,7 +3,7 @@
 // nothing.
 
 (() => {
-  const { setup, metrics, rungs } = globalThis.results;
+  const { setup, metrics, rungs: configurations } = globalThis.results;
   const {
     TIMES,
     STATES,
@@ -23,18 +23,18 @@
   const tip = document.getElementById('tip');
   const svg = document.getElementById('chart');
 
-  function showTip({ rung, ms }, mark) {
+  function showTip({ configuration, ms }, mark) {
     tip.replaceChildren();
     const title = document.createElement('b');
-    title.textContent = rung.name;
+    title.textContent = configuration.name;
     const text = document.createElement('div');
     text.textContent =
-      `${settingText(rung)}. ${short(ms)} ms; ` +
-      `${metricOf(choice.metric).title} ${short(valueOf(rung, choice))}; ` +
-      `${short(rung.memory_bytes / 1048576)} MiB`;
+      `${settingText(configuration)}. ${short(ms)} ms; ` +
+      `${metricOf(choice.metric).title} ${short(valueOf(configuration, choice))}; ` +
+      `${short(configuration.memory_bytes / 1048576)} MiB`;
     const picture = document.createElement('img');
-    picture.src = rung.pictures.converged;
-    picture.alt = `Final picture of ${rung.name}`;
+    picture.src = configuration.pictures.converged;
+    picture.alt = `Final picture of ${configuration.name}`;
     tip.append(title, text, picture);
     tip.hidden = false;
     // The chart may be drawn smaller than its own coordinates.
@@ -51,8 +51,8 @@
     onHide: () => {
       tip.hidden = true;
     },
-    onChoose: ({ rung }) => {
-      const strip = document.getElementById(`strip-${rung.name}`);
+    onChoose: ({ configuration }) => {
+      const strip = document.getElementById(`strip-${configuration.name}`);
       strip.open = true;
       strip.scrollIntoView();
     },
@@ -91,35 +91,40 @@
     ])
       cell(head, text, 'th');
     const body = table.createTBody();
-    const front = new Set(frontOf(pointsOf(rungs, choice)).map(({ rung }) => rung));
-    for (const rung of [...rungs].sort((a, b) => a.frame_ms.median - b.frame_ms.median)) {
+    const front = new Set(
+      frontOf(pointsOf(configurations, choice)).map(({ configuration }) => configuration),
+    );
+    for (const configuration of [...configurations].sort(
+      (a, b) => a.frame_ms.median - b.frame_ms.median,
+    )) {
       const row = body.insertRow();
-      row.className = front.has(rung) ? 'on-front' : '';
-      row.title = settingText(rung);
-      cell(row, rung.name);
-      for (const { get } of Object.values(TIMES)) cell(row, short(get(rung)));
-      cell(row, short(rung.memory_bytes / 1048576));
-      for (const { name } of metrics) cell(row, short(valueOf(rung, choice, name)));
+      row.className = front.has(configuration) ? 'on-front' : '';
+      row.title = settingText(configuration);
+      cell(row, configuration.name);
+      for (const { get } of Object.values(TIMES)) cell(row, short(get(configuration)));
+      cell(row, short(configuration.memory_bytes / 1048576));
+      for (const { name } of metrics) cell(row, short(valueOf(configuration, choice, name)));
     }
   }
 
   function drawStrips() {
-    const place = document.getElementById('strips');
-    for (const rung of rungs) {
+    const strips = document.getElementById('strips');
+    for (const configuration of configurations) {
       const strip = document.createElement('details');
-      strip.id = `strip-${rung.name}`;
+      strip.id = `strip-${configuration.name}`;
       const summary = document.createElement('summary');
-      summary.textContent = `${rung.name}: ${settingText(rung)}`;
+      summary.textContent = `${configuration.name}: ${settingText(configuration)}`;
       const picture = document.createElement('img');
       picture.loading = 'lazy';
-      picture.src = rung.pictures.strip;
-      picture.alt = `Reference image, first picture, final picture and error of ${rung.name}`;
+      picture.src = configuration.pictures.strip;
+      picture.alt =
+        'Reference image, first picture, final picture and error of ' + configuration.name;
       const passes = document.createElement('p');
-      const times = Object.entries(rung.pass_ms ?? {}).sort(([, a], [, b]) => b - a);
+      const times = Object.entries(configuration.pass_ms ?? {}).sort(([, a], [, b]) => b - a);
       const passTimes = times.map(([name, ms]) => `${name} ${short(ms)}`).join(', ');
       passes.textContent = `Median ms of passes: ${passTimes}.`;
       strip.append(summary, picture, passes);
-      place.append(strip);
+      strips.append(strip);
     }
   }
 
@@ -159,7 +164,7 @@
       `The reference image is ${reference.source}. ${describeNoise()} ` +
       `Displayed by the ${setup.tonemap} curve at exposure ${short(setup.exposure)}.`;
     const legend = document.getElementById('legend');
-    for (const method of new Set(rungs.map((rung) => rung.method))) {
+    for (const method of new Set(configurations.map((configuration) => configuration.method))) {
       const mark = document.createElement('b');
       mark.style.background = colorOf(method);
       legend.append(mark, method);

@@ -48,8 +48,8 @@ export class SceneDocument extends EventTarget {
     else if (verb === 'remove') this.#removeLight(edit.id);
     else if (verb === 'load') this.#loadEnvironment(edit, isStale);
     else this.assign(group, edit.id, edit.set, isStale);
-    for (const place of edit.lights ?? []) this.#move('light', place, isStale);
-    for (const place of edit.nodes ?? []) this.#move('node', place, isStale);
+    for (const placement of edit.lights ?? []) this.#move('light', placement, isStale);
+    for (const placement of edit.nodes ?? []) this.#move('node', placement, isStale);
   }
 
   /** @param {string} group @param {number | undefined} id @param {Record<string, any>} set */

@@ -12,9 +12,9 @@ export class PictureBadge {
   constructor(root) {
     this.root = root;
     this.row = element('span', { class: 'row-name' });
-    this.share = element('span', { class: 'share' });
+    this.fraction = element('span', { class: 'fraction' });
     this.bar = element('progress', { max: 1, 'aria-label': 'How far the picture has come' });
-    root.replaceChildren(this.row, this.share, this.bar);
+    root.replaceChildren(this.row, this.fraction, this.bar);
   }
 
   /** @param {import('../net/frame_header.js').FrameHeader} header @param {string} rowName */
@@ -23,7 +23,7 @@ export class PictureBadge {
     this.root.classList.toggle('done', converged);
     this.row.textContent =
       referenceSamples > 0 ? describeReference(referenceSamples, referenceNoise) : rowName;
-    this.share.textContent = converged ? 'done' : `${Math.floor(100 * convergence)} %`;
+    this.fraction.textContent = converged ? 'done' : `${Math.floor(100 * convergence)} %`;
     this.bar.value = convergence;
   }
 }

@@ -9,7 +9,8 @@ const SPARE_ROWS = 6;
  *   null, camera: number | null, visible: boolean}} Node
  */
 /**
- * @typedef {{node: Node, level: number, hasChildren: boolean, place: number, siblings: number}} Row
+ * @typedef {{node: Node, level: number, hasChildren: boolean, position: number, siblings: number}}
+ *   Row
  */
 
 const kindOf = (/** @type {Node} */ node) =>
@@ -75,7 +76,7 @@ export class SceneTree {
       list.forEach((node, i) => {
         const below = children.get(node.id) ?? [];
         const hasChildren = below.length > 0;
-        this.rows.push({ node, level, hasChildren, place: i + 1, siblings: list.length });
+        this.rows.push({ node, level, hasChildren, position: i + 1, siblings: list.length });
         if (hasChildren && !this.closed.has(node.id)) add(below, level + 1);
       });
     add(children.get(null) ?? [], 1);
@@ -106,7 +107,7 @@ export class SceneTree {
   }
 
   #makeRow(
-    /** @type {Row} */ { node, level, hasChildren, place, siblings },
+    /** @type {Row} */ { node, level, hasChildren, position, siblings },
     /** @type {number} */ index,
   ) {
     const isOpen = !this.closed.has(node.id);
@@ -141,7 +142,7 @@ export class SceneTree {
         class: node.visible ? 'row' : 'row unseen',
         style: `top:${index * ROW_PX}px;padding-left:${4 + (level - 1) * 14}px`,
         'aria-level': level,
-        'aria-posinset': place,
+        'aria-posinset': position,
         'aria-setsize': siblings,
         'aria-selected': node.id === this.chosen,
         'aria-expanded': hasChildren ? isOpen : undefined,

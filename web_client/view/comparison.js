@@ -12,7 +12,7 @@ const OBSTACLES = {
 /**
  * @typedef {object} ComparisonState
  * @property {'none' | 'split' | 'error'} mode
- * @property {string} truthUrl
+ * @property {string} referenceUrl
  * @property {string} errorUrl
  * @property {string} errorName whose errors they are
  * @property {'' | 'camera' | 'shape'} obstacle why measured images do not fit over the shown one
@@ -32,10 +32,10 @@ export class Comparison extends EventTarget {
     this.pictures = pictures;
     this.controls = controls;
     /** Fraction of the image that is live, from the left. */
-    this.share = 0.5;
-    this.truth = element('img', { alt: 'The reference image', draggable: 'false' });
+    this.fraction = 0.5;
+    this.reference = element('img', { alt: 'The reference image', draggable: 'false' });
     this.error = element('img', { alt: '', draggable: 'false' });
-    pictures.append(this.truth, this.error);
+    pictures.append(this.reference, this.error);
     this.divider = this.#makeDivider();
     this.legend = makeLegend();
     this.hint = element('span', {});
@@ -46,20 +46,20 @@ export class Comparison extends EventTarget {
     );
     this.obstacle = element('div', { class: 'stage-hint', role: 'status' }, this.hint, this.goBack);
     controls.append(this.divider, this.legend, this.obstacle);
-    this.#move(this.share);
+    this.#move(this.fraction);
   }
 
   /** @param {ComparisonState} state */
-  show({ mode, truthUrl, errorUrl, errorName, obstacle }) {
+  show({ mode, referenceUrl, errorUrl, errorName, obstacle }) {
     const fits = obstacle === '';
     this.controls.hidden = this.pictures.hidden = mode === 'none';
-    this.truth.hidden = this.divider.hidden = !(mode === 'split' && fits);
+    this.reference.hidden = this.divider.hidden = !(mode === 'split' && fits);
     this.error.hidden = this.legend.hidden = !(mode === 'error' && fits);
     this.obstacle.hidden = fits;
     this.goBack.hidden = obstacle !== 'camera';
     this.hint.textContent = obstacle ? OBSTACLES[obstacle] : '';
     // Images are loaded when they are first shown.
-    if (mode === 'split') setSource(this.truth, truthUrl);
+    if (mode === 'split') setSource(this.reference, referenceUrl);
     if (mode === 'error') {
       setSource(this.error, errorUrl);
       this.error.alt = `Where ${errorName} errs`;
@@ -79,7 +79,7 @@ export class Comparison extends EventTarget {
         'aria-orientation': 'horizontal',
       },
       element('span', { class: 'side live', 'aria-hidden': 'true' }, 'live'),
-      element('span', { class: 'side truth', 'aria-hidden': 'true' }, 'reference'),
+      element('span', { class: 'side reference', 'aria-hidden': 'true' }, 'reference'),
       element('span', { class: 'knob', 'aria-hidden': 'true' }, '‹ ›'),
     );
     divider.addEventListener('pointerdown', (/** @type {PointerEvent} */ event) => {
@@ -97,14 +97,14 @@ export class Comparison extends EventTarget {
   }
 
   #key(/** @type {KeyboardEvent} */ event) {
-    const { share } = this;
+    const { fraction } = this;
     const target = {
-      ArrowLeft: share - STEP,
-      ArrowDown: share - STEP,
-      ArrowRight: share + STEP,
-      ArrowUp: share + STEP,
-      PageDown: share - LARGE_STEP,
-      PageUp: share + LARGE_STEP,
+      ArrowLeft: fraction - STEP,
+      ArrowDown: fraction - STEP,
+      ArrowRight: fraction + STEP,
+      ArrowUp: fraction + STEP,
+      PageDown: fraction - LARGE_STEP,
+      PageUp: fraction + LARGE_STEP,
       Home: 0,
       End: 1,
     }[event.key];
@@ -113,11 +113,11 @@ export class Comparison extends EventTarget {
     this.#move(target);
   }
 
-  #move(/** @type {number} */ share) {
-    this.share = Math.min(Math.max(share, 0), 1);
-    const percent = Math.round(100 * this.share);
-    this.truth.style.clipPath = `inset(0 0 0 ${100 * this.share}%)`;
-    this.divider.style.left = `${100 * this.share}%`;
+  #move(/** @type {number} */ fraction) {
+    this.fraction = Math.min(Math.max(fraction, 0), 1);
+    const percent = Math.round(100 * this.fraction);
+    this.reference.style.clipPath = `inset(0 0 0 ${100 * this.fraction}%)`;
+    this.divider.style.left = `${100 * this.fraction}%`;
     this.divider.setAttribute('aria-valuenow', String(percent));
     this.divider.setAttribute('aria-valuetext', `${percent} % live, ${100 - percent} % reference`);
   }

@@ -68,13 +68,13 @@ export class Overlay extends EventTarget {
     this.#drawHandle();
   }
 
-  #place(/** @type {Vector} */ point) {
-    const place = this.pose && projectPoint(this.pose, this.aspect, point);
-    if (!place) return null;
+  #project(/** @type {Vector} */ point) {
+    const position = this.pose && projectPoint(this.pose, this.aspect, point);
+    if (!position) return null;
     return {
-      x: place.x * this.svg.clientWidth,
-      y: place.y * this.svg.clientHeight,
-      depth: place.depth,
+      x: position.x * this.svg.clientWidth,
+      y: position.y * this.svg.clientHeight,
+      depth: position.depth,
     };
   }
 
@@ -91,9 +91,9 @@ export class Overlay extends EventTarget {
         icon = this.#makeLight(light.id);
         this.lightIcons.set(light.id, icon);
       }
-      const place = this.#place(light.position);
-      icon.style.display = place ? '' : 'none';
-      if (place) icon.setAttribute('transform', `translate(${place.x} ${place.y})`);
+      const position = this.#project(light.position);
+      icon.style.display = position ? '' : 'none';
+      if (position) icon.setAttribute('transform', `translate(${position.x} ${position.y})`);
       icon.classList.toggle('chosen', light.id === this.chosenLight);
       icon.classList.toggle('off', !light.enabled);
       icon.setAttribute('aria-label', `Select light ${light.name || light.id}`);
@@ -153,7 +153,7 @@ export class Overlay extends EventTarget {
   }
 
   #drawHandle() {
-    const origin = this.handle && this.#place(this.handle);
+    const origin = this.handle && this.#project(this.handle);
     this.handleLayer.style.display = origin ? '' : 'none';
     // At a light, its icon is the centre of the handle.
     this.handleLayer.classList.toggle('at-light', this.chosenLight !== null);
@@ -162,7 +162,7 @@ export class Overlay extends EventTarget {
     const metres =
       (2 * Math.tan(this.pose.fov_y_rad / 2) * origin.depth * HANDLE_PX) / this.svg.clientHeight;
     for (const { direction, group, hit, line, tip } of this.handleParts.axes) {
-      const end = this.#place(add(this.handle, scale(direction, metres)));
+      const end = this.#project(add(this.handle, scale(direction, metres)));
       // An axis that points at the eye cannot be dragged.
       const long = end ? Math.hypot(end.x - origin.x, end.y - origin.y) : 0;
       const isShort = long < 2 * MIDDLE_PX;

@@ -5,7 +5,7 @@ const SETTLE_MS = 150;
 /**
  * This client's view: its size follows the stage, its options follow the panel, and it pauses while
  * the page is hidden. A measured configuration may draw it instead of the shared settings. Events:
- * `changed`, when options have changed, and `rung`, when the configuration has.
+ * `changed`, when options have changed, and `configuration`, when the configuration has.
  */
 export class ViewControls extends EventTarget {
   /**
@@ -24,7 +24,7 @@ export class ViewControls extends EventTarget {
     /** @type {Record<string, any>} chosen options of group view */
     this.options = {};
     /** Name of the measured configuration that draws this view; "": the shared settings do. */
-    this.rung = '';
+    this.configuration = '';
     this.server = { isSoftware: false, maxWidth: 4096, maxHeight: 2160 };
     /** @type {number | undefined} */
     this.timer = undefined;
@@ -44,32 +44,32 @@ export class ViewControls extends EventTarget {
     };
     // Measurements belong to a connection: at its start no configuration is chosen, and sizes do
     // not change the choice.
-    const { width: _width, height: _height, rung: _rung, ...options } = hello.view;
+    const { width: _width, height: _height, rung: _configuration, ...options } = hello.view;
     this.options = { ...options, ...this.options };
-    this.#setRung('');
+    this.#setConfiguration('');
     this.send();
   }
 
   /**
    * Draws this view with a configuration of this client's newest measurement.
-   * @param {string} rung its name, or ""
+   * @param {string} configuration its name, or ""
    */
-  async chooseRung(rung) {
-    await this.connection.call('view.configure', { rung });
-    this.#setRung(rung);
+  async chooseConfiguration(configuration) {
+    await this.connection.call('view.configure', { rung: configuration });
+    this.#setConfiguration(configuration);
   }
 
   /**
    * The server has gone back to the shared settings, as it does for another scene or measurement.
    */
-  forgetRung() {
-    this.#setRung('');
+  forgetConfiguration() {
+    this.#setConfiguration('');
   }
 
-  #setRung(/** @type {string} */ rung) {
-    if (rung === this.rung) return;
-    this.rung = rung;
-    this.dispatchEvent(new Event('rung'));
+  #setConfiguration(/** @type {string} */ configuration) {
+    if (configuration === this.configuration) return;
+    this.configuration = configuration;
+    this.dispatchEvent(new Event('configuration'));
   }
 
   /** @param {Record<string, any>} set fields of group view */

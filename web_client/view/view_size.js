@@ -19,12 +19,12 @@ export const RENDER_SIZES = /** @type {Record<string, [number, number] | null>} 
  * @returns {{width: number, height: number}}
  */
 export function chooseViewSize(stage, pixelRatio, choice, server) {
-  const most = RENDER_SIZES[choice] ?? (server.isSoftware ? [640, 360] : [1920, 1080]);
+  const maxSize = RENDER_SIZES[choice] ?? (server.isSoftware ? [640, 360] : [1920, 1080]);
   const width = stage.width * pixelRatio;
   const height = stage.height * pixelRatio;
   const factor = Math.min(
     1,
-    Math.sqrt((most[0] * most[1]) / (width * height)),
+    Math.sqrt((maxSize[0] * maxSize[1]) / (width * height)),
     server.maxWidth / width,
     server.maxHeight / height,
   );
