@@ -14,7 +14,7 @@ static const char usage[] =
     "  bench [natus|effects|edit]\n"
     "                            measure frames; JSON or tables on stdout; see\n"
     "                            voxcast bench --help\n"
-    "  compare A.pfm B.pfm       tell how far a picture is from the truth; see\n"
+    "  compare A.pfm B.pfm       tell how far an image is from a reference; see\n"
     "                            voxcast compare --help\n"
     "  accuracy SCENE --out DIR  error against time for every setting; see\n"
     "                            voxcast accuracy --help\n"

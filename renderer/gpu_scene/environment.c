@@ -308,7 +308,7 @@ bool gpu_scene_upload_environment(struct gpu_scene *gpu_scene)
                            GPU_BUFFER_STATIC, sizeof(block)))
         return false;
     gpu_buffer_write(gpu_scene->environment, 0, sizeof(block), &block);
-    // Intensity and rotation are uniforms: the pictures need not be made again for them.
+    // Intensity and rotation are uniforms: the images need not be made again for them.
     if (gpu_scene->environment_levels && same_pictures(gpu_scene))
         return true;
     if (!upload_levels(gpu_scene, environment) || !upload_background(gpu_scene, environment))

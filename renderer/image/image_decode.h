@@ -1,4 +1,4 @@
-// Decodes picture files from memory: PNG, JPEG, TGA, BMP and WebP to 8-bit RGBA.
+// Decodes image files from memory: PNG, JPEG, TGA, BMP and WebP to 8-bit RGBA.
 #ifndef VOXCAST_RENDERER_IMAGE_IMAGE_DECODE_H
 #define VOXCAST_RENDERER_IMAGE_IMAGE_DECODE_H
 

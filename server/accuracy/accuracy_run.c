@@ -115,7 +115,8 @@ static bool measure_configuration(struct climb *climb, const struct configuratio
     climb->measured_s = 1e-3 * (clock_now_ms() - started_ms);
     climb->measured_count++;
     return write_results(climb, out_error) &&
-           (tell(climb) || error_set(out_error, "stopped after rung %s", configuration->name));
+           (tell(climb) ||
+            error_set(out_error, "stopped after configuration %s", configuration->name));
 }
 
 // Measures the configurations that have no results yet.
@@ -123,7 +124,7 @@ static bool measure_configurations(const struct accuracy_run *run, cJSON *result
                                    struct error *out_error)
 {
     struct climb climb = {.run = run, .results = results, .started_ms = clock_now_ms()};
-    bool done = tell(&climb) || error_set(out_error, "stopped before the first rung");
+    bool done = tell(&climb) || error_set(out_error, "stopped before the first configuration");
     for (uint32_t i = 0; i < run->sweep->configuration_count && done; i++)
         if (!results_find(results, &run->sweep->configurations[i]))
             done =

@@ -102,7 +102,7 @@ static bool draw_settled(struct edit_bench *bench, const struct frame_params *pa
     if (render.converged)
         return true;
     renderer_view_release(bench->params->renderer, bench->view);
-    return error_set(out_error, "the picture has not settled after %u frames", render.frame_count);
+    return error_set(out_error, "the image has not converged after %u frames", render.frame_count);
 }
 
 static bool draw_linear(struct edit_bench *bench, enum debug_view debug_view, float *out_rgb,
@@ -151,7 +151,7 @@ static bool draw_states(struct edit_bench *bench, struct error *out_error)
         indirect_difference(bench, a->settled, a->direct, b->settled, b->direct);
     if (bench->change < MIN_CHANGE)
         return error_set(out_error,
-                         "the edit changes the picture by %.2g of white: too little to "
+                         "the edit changes the image by %.2g of white: too little to "
                          "measure; choose another light or view",
                          bench->change);
     return draw_linear(bench, DEBUG_VIEW_FINAL, bench->frame, out_error);
@@ -203,7 +203,7 @@ static bool measure_edit(struct edit_bench *bench, const struct edit_state *to,
     }
     out_run->stages[EDIT_SETTLED] = now;
     if (out_run->stages[EDIT_ARRIVED].frames == 0 || out_run->stages[EDIT_INDIRECT].frames == 0)
-        return error_set(out_error, "the picture settled short of what it was when it was drawn "
+        return error_set(out_error, "the image converged short of what it was when it was drawn "
                                     "with this light before");
     return true;
 }
@@ -238,7 +238,7 @@ static bool choose_target(struct edit_bench *bench, struct error *out_error)
             material_shines(&scene->materials[i]))
             bench->material = i;
     if (bench->light == SCENE_NONE && bench->material == SCENE_NONE)
-        return error_set(out_error, "nothing in the scene shines: neither lamp nor material");
+        return error_set(out_error, "nothing in the scene shines: neither light nor material");
     if (bench->light != SCENE_NONE &&
         (bench->light >= scene->light_count || !light_shines(&scene->lights[bench->light])))
         return error_set(out_error, "light %u is not there or does not shine; the scene has %u",

@@ -336,9 +336,9 @@ static bool measure(struct configuration_work *work, struct error *out_error)
                 measure_edits(work, out_error);
     renderer_view_destroy(accuracy->shot.renderer, &work->view);
     // An interrupted edit looks like one that cannot be measured.
-    done = done &&
-           (renderer_admit_frame(accuracy->shot.renderer) ||
-            error_set(out_error, "stopped while rung %s was measured", work->configuration->name));
+    done = done && (renderer_admit_frame(accuracy->shot.renderer) ||
+                    error_set(out_error, "stopped while configuration %s was measured",
+                              work->configuration->name));
     return done && judge_picture(work, "cold", &work->cold, out_error) &&
            judge_picture(work, "converged", &work->converged, out_error) &&
            write_pictures(work, out_error);

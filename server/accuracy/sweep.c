@@ -123,7 +123,7 @@ static bool read_name(const cJSON *item, struct configuration *configuration,
         fine = isalnum((unsigned char)name[i]) || strchr("-_.", name[i]);
     if (!fine)
         return error_set(out_error,
-                         "a rung's name is \"%.80s\"; 1 to %u letters, digits, '-', "
+                         "a configuration's name is \"%.80s\"; 1 to %u letters, digits, '-', "
                          "'_' and '.' are needed",
                          name ? name : "", CONFIGURATION_NAME_SIZE - 1);
     snprintf(configuration->name, sizeof(configuration->name), "%s", name);
@@ -142,7 +142,7 @@ static bool read_preset(const cJSON *item, struct configuration *configuration,
             configuration->quality = (enum quality)i;
             return true;
         }
-    return error_set(out_error, "rung %s: preset allows draft, interactive, high, final",
+    return error_set(out_error, "configuration %s: preset allows draft, interactive, high, final",
                      configuration->name);
 }
 
@@ -153,7 +153,8 @@ static bool read_scale(const cJSON *item, struct configuration *configuration,
     configuration->scale = scale ? cJSON_GetNumberValue(scale) : 1.0;
     return (configuration->scale >= 0.25 && configuration->scale <= 1.0) ||
            configuration->scale == 2.0 ||
-           error_set(out_error, "rung %s: scale allows 0.25 to 1, and 2", configuration->name);
+           error_set(out_error, "configuration %s: scale allows 0.25 to 1, and 2",
+                     configuration->name);
 }
 
 static bool read_sets(const cJSON *item, struct configuration *configuration,
@@ -161,16 +162,18 @@ static bool read_sets(const cJSON *item, struct configuration *configuration,
 {
     const cJSON *sets = cJSON_GetObjectItemCaseSensitive(item, "set"), *set;
     if (sets && !cJSON_IsObject(sets))
-        return error_set(out_error, "rung %s: set is {\"KEY\": VALUE, ...}", configuration->name);
+        return error_set(out_error, "configuration %s: set is {\"KEY\": VALUE, ...}",
+                         configuration->name);
     cJSON_ArrayForEach(set, sets)
     {
         char *text = cJSON_IsString(set) ? strdup(set->valuestring) : cJSON_PrintUnformatted(set);
         bool done = text && add_set(configuration, set->string, text);
         free(text);
         if (!done)
-            return error_set(out_error,
-                             "rung %s: \"%.80s\" is too long, or there are more than %u settings",
-                             configuration->name, set->string, CONFIGURATION_MAX_SETS);
+            return error_set(
+                out_error,
+                "configuration %s: \"%.80s\" is too long, or there are more than %u settings",
+                configuration->name, set->string, CONFIGURATION_MAX_SETS);
     }
     return true;
 }
@@ -179,12 +182,12 @@ static bool read_configurations(const cJSON *array, struct sweep *sweep, struct 
 {
     const cJSON *item;
     if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) == 0)
-        return error_set(out_error, "an array of rungs is needed");
+        return error_set(out_error, "an array of configurations is needed");
     cJSON_ArrayForEach(item, array)
     {
         struct configuration *configuration = add_configuration(sweep, "", QUALITY_HIGH);
         if (!configuration)
-            return error_set(out_error, "more than %u rungs", SWEEP_MAX_CONFIGURATIONS);
+            return error_set(out_error, "more than %u configurations", SWEEP_MAX_CONFIGURATIONS);
         if (!read_name(item, configuration, out_error) ||
             !read_preset(item, configuration, out_error) ||
             !read_scale(item, configuration, out_error) ||
@@ -192,7 +195,8 @@ static bool read_configurations(const cJSON *array, struct sweep *sweep, struct 
             return false;
         for (uint32_t i = 0; i + 1 < sweep->configuration_count; i++)
             if (strcmp(sweep->configurations[i].name, configuration->name) == 0)
-                return error_set(out_error, "two rungs have the name %s", configuration->name);
+                return error_set(out_error, "two configurations have the name %s",
+                                 configuration->name);
     }
     return true;
 }
@@ -214,7 +218,7 @@ static bool load_file(const char *path, struct sweep *sweep, struct error *out_e
                       : error_set(&error, "no JSON of up to %u bytes", MAX_SWEEP_BYTES);
     cJSON_Delete(array);
     free(text);
-    return done || error_set(out_error, "ladder \"%.200s\": %.280s", path, error.message);
+    return done || error_set(out_error, "sweep \"%.200s\": %.280s", path, error.message);
 }
 
 bool sweep_load(const char *name, struct sweep *out_sweep, struct error *out_error)
@@ -250,14 +254,15 @@ bool configuration_apply(const struct configuration *configuration, struct frame
         if (strncmp(key, "settings.", 9) == 0)
             key += 9;
         if (!parameter_find(GROUP_SETTINGS, key))
-            return error_set(out_error, "rung %s: \"%s\" is no field of settings",
+            return error_set(out_error, "configuration %s: \"%s\" is no field of settings",
                              configuration->name, key);
         if (!document_set_text(NULL, &params->settings, NULL, key, configuration->sets[i].value,
                                &error))
-            return error_set(out_error, "rung %s: %.400s", configuration->name, error.message);
+            return error_set(out_error, "configuration %s: %.400s", configuration->name,
+                             error.message);
     }
     return params->settings.gi_method != GI_METHOD_REFERENCE ||
-           error_set(out_error, "rung %s: the reference is the truth, and no rung",
+           error_set(out_error, "configuration %s: the reference is no configuration to measure",
                      configuration->name);
 }
 

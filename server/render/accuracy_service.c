@@ -194,7 +194,8 @@ static bool measure(struct accuracy_service *service, struct accuracy_session *s
 static void run_session(struct accuracy_service *service, struct accuracy_session *session)
 {
     struct error error = {""};
-    log_write(LOG_INFO, "accuracy_started client=%u measurement=%s width=%u height=%u rungs=%u",
+    log_write(LOG_INFO,
+              "accuracy_started client=%u measurement=%s width=%u height=%u configurations=%u",
               session->client_id, session->id, session->params.width, session->params.height,
               session->sweep.configuration_count);
     post(service, session, ACCURACY_REFERENCE, NULL, NULL);
@@ -400,7 +401,8 @@ bool accuracy_service_get_configuration(struct accuracy_service *service, uint32
     const struct accuracy_session *session = find(service, client_id);
     pthread_mutex_unlock(&service->mutex);
     if (!session)
-        return error_set(out_error, "there is no rung \"%.60s\": nothing has been measured", name);
+        return error_set(out_error,
+                         "there is no configuration \"%.60s\": nothing has been measured", name);
     char list[384];
     for (uint32_t i = 0; i < session->sweep.configuration_count; i++) {
         const struct configuration *configuration = &session->sweep.configurations[i];
@@ -414,7 +416,7 @@ bool accuracy_service_get_configuration(struct accuracy_service *service, uint32
         return true;
     }
     list_configurations(&session->sweep, list, sizeof(list));
-    return error_set(out_error, "there is no rung \"%.60s\"; measured are %s", name, list);
+    return error_set(out_error, "there is no configuration \"%.60s\"; measured are %s", name, list);
 }
 
 bool accuracy_service_find_file(struct accuracy_service *service, const char *url, char *out_path,

@@ -210,7 +210,7 @@ static bool lost_a_picture(const struct render_thread *thread, const struct scen
     bool reload = thread->scene && thread->load_client_id == 0;
     if (!reload || scene->missing_image_count <= thread->scene->missing_image_count)
         return false;
-    const char *text = "a picture can no longer be read";
+    const char *text = "an image can no longer be read";
     for (uint32_t i = 0; i < scene->warning_count; i++)
         if (strstr(scene->warnings[i], "left out"))
             text = scene->warnings[i];

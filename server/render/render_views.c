@@ -69,7 +69,7 @@ bool render_renew_views(struct render_thread *thread)
             return false;
         render_mark_moving(thread, client);
         render_notice(thread, client->client_id, "error",
-                      "the graphics driver was reset; pictures start anew");
+                      "the graphics driver was reset; images start anew");
     }
     return true;
 }

@@ -22,35 +22,36 @@
 static const char usage[] =
     "usage: voxcast accuracy SCENE|builtin:NAME --out DIR [OPTIONS]\n"
     "\n"
-    "Renders (or loads) the truth, then one view by every setting of a ladder, and writes into "
-    "DIR\n"
-    "results.json, results.csv, a page with charts (index.html), and pictures. Each rung is "
-    "measured\n"
-    "in a scene that has just been loaded: its first picture (cold) and the one it settles on\n"
-    "(converged) against the truth, frames of a moving camera, memory, and edits of a light.\n"
-    "Rungs than which no other is both faster and less wrong are marked as the Pareto front.\n"
+    "Renders (or loads) the reference image, then one view by every configuration of a sweep,\n"
+    "and writes into DIR results.json, results.csv, a page with charts (index.html), and images.\n"
+    "Each configuration is measured in a scene that has just been loaded: its first image (cold)\n"
+    "and the converged one against the reference, frames of a moving camera, memory, and edits of\n"
+    "a light. Configurations than which no other is both faster and less wrong are marked as the\n"
+    "Pareto front.\n"
     "What is there already of the same set-up is kept: a run that was stopped goes on.\n"
     "\n"
     "  --out DIR            made if it is not there\n"
-    "  --ladder NAME|FILE   quick (no indirect light, and the presets), full (52 rungs), or a "
-    "file:\n"
+    "  --ladder NAME|FILE   quick (no indirect light, and the presets), full (52\n"
+    "                       configurations), or a file:\n"
     "                       [{\"name\", \"preset\", \"scale\", \"set\": {\"cone_set\": \"9\", "
     "...}}, ...]\n"
     "                       (default quick)\n"
-    "  --reference FILE     the truth, a .pfm of --size\n"
-    "  --reference-direct FILE   its emission and light of lamps and emitters reflected once, to\n"
+    "  --reference FILE     the reference image, a .pfm of --size\n"
+    "  --reference-direct FILE   its emission and what lights and emitters give by one reflection, "
+    "to\n"
     "                       judge indirect light alone, too (light of the sky counts as such)\n"
-    "  --reference-spp N    trace the truth with N samples a pixel, 1 to 1048576\n"
+    "  --reference-spp N    trace the reference with N samples a pixel, 1 to 1048576\n"
     "  --until-noise X      trace until its noise is X, 0.0001 to 1 (default 0.01): standard "
     "error\n"
-    "                       of pixels over the mean of the picture\n"
+    "                       of pixels over the mean of the image\n"
     "  --frames N           frames of a moving camera that are measured, at most 4 s of them,\n"
     "                       1 to 1000 (default 12)\n"
     "  --edits N            edits of a light that are measured, 0 to 100 (default 1)\n"
     "  --size WxH           1x1 to 4096x2160 (default 640x360)\n"
     "  --environment, --camera, --eye, --target, --up, --fov-y-deg, --gi, --set, --gpu   as\n"
     "                           voxcast render;\n"
-    "                       --gi and --set hold for the rungs that do not say otherwise\n";
+    "                       --gi and --set hold for the configurations that do not say\n"
+    "                       otherwise\n";
 
 struct accuracy_options {
     struct cli_shot_options shot;
@@ -92,7 +93,8 @@ static void print_configurations(const struct accuracy_progress *progress)
                 bar, progress->done, progress->configuration_count, progress->measured->name,
                 progress->measured_s, floor(left_s / 60.0), floor(fmod(left_s, 60.0)));
     else if (progress->done > 0)
-        fprintf(stderr, "voxcast: %u rungs of the same set-up are there already\n", progress->done);
+        fprintf(stderr, "voxcast: %u configurations of the same set-up are there already\n",
+                progress->done);
 }
 
 static bool tell(void *user, const struct accuracy_progress *progress)
@@ -190,9 +192,9 @@ static bool parse_options(int argc, char **argv, struct accuracy_options *option
         wrong = "--reference-direct needs --reference";
     else if (options->shot.settings.preset != CLI_NO_CHOICE ||
              options->shot.settings.view != CLI_NO_CHOICE)
-        wrong = "--preset and --view are up to the ladder; see voxcast accuracy --help";
+        wrong = "--preset and --view are up to the sweep; see voxcast accuracy --help";
     else if (options->shot.settings.gi == GI_METHOD_REFERENCE)
-        wrong = "--gi reference is the truth, and no rung; see voxcast accuracy --help";
+        wrong = "--gi reference is no configuration to measure; see voxcast accuracy --help";
     if (references == 0)
         options->until_noise = DEFAULT_NOISE;
     if (wrong)

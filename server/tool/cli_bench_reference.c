@@ -20,7 +20,7 @@
 static const char usage[] =
     "usage: voxcast bench reference [SCENE|builtin:NAME]... [OPTIONS]\n"
     "\n"
-    "For each scene (default: all built-in ones) records the rays of a picture by the reference\n"
+    "For each scene (default: all built-in ones) records the rays of an image by the reference\n"
     "path tracer, then casts them in turns by a bare Embree loop and by the path tracer itself,\n"
     "on all processors. Prints JSON: medians of millions of rays per second, of their ratio, and\n"
     "of that by processor time, which holds on a busy machine, too; for direct light (primary\n"

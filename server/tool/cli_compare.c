@@ -16,7 +16,7 @@
 static const char usage[] =
     "usage: voxcast compare A.pfm B.pfm [OPTIONS]\n"
     "\n"
-    "Compares picture A with picture B, the truth. Both hold linear radiance, as voxcast render\n"
+    "Compares image A with image B, the reference. Both hold linear radiance, as voxcast render\n"
     "writes it. RMSE, MAE, relMSE, the 95th percentile, energy ratios and HDR-FLIP are of "
     "radiance;\n"
     "PSNR, SSIM and LDR-FLIP of displayed pictures, both at one exposure.\n"
@@ -121,7 +121,7 @@ int cli_compare(int argc, char **argv)
     if (!cli_parse(&parser, argc, argv, &status))
         return status;
     if (parser.argument_count != 2)
-        return cli_fail(CLI_EXIT_USAGE, "two pictures are needed; see voxcast compare --help");
+        return cli_fail(CLI_EXIT_USAGE, "two images are needed; see voxcast compare --help");
     if (options.heatmap && !picture_file_has_extension(options.heatmap, ".png"))
         return cli_fail(CLI_EXIT_USAGE, "--heatmap is \"%s\"; a name that ends with .png is needed",
                         options.heatmap);

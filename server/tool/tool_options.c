@@ -314,7 +314,7 @@ bool cli_settings_apply(const struct cli_settings *options, enum quality preset,
             return false;
         if (view->rung[0])
             return error_set(out_error,
-                             "--set \"%.200s\": rungs are measured by clients of the "
+                             "--set \"%.200s\": configurations are measured by clients of the "
                              "daemon; see voxcast accuracy --help",
                              text);
     }

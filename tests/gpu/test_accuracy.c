@@ -82,9 +82,9 @@ static void test_sweeps_in_files(void **state)
     struct error error = {""};
     char path[256];
     assert_non_null(sweep);
-    write_file("ladder.json", "[{\"name\": \"a\", \"preset\": \"draft\", \"scale\": 0.5, \"set\": "
-                              "{\"cone_set\": 16, \"settings.soft_shadows\": false}}]");
-    name_file(path, "ladder.json");
+    write_file("sweep.json", "[{\"name\": \"a\", \"preset\": \"draft\", \"scale\": 0.5, \"set\": "
+                             "{\"cone_set\": 16, \"settings.soft_shadows\": false}}]");
+    name_file(path, "sweep.json");
     if (!sweep_load(path, sweep, &error))
         fail_msg("%s", error.message);
     struct frame_params params = {0};
@@ -95,7 +95,7 @@ static void test_sweeps_in_files(void **state)
     assert_false(params.settings.soft_shadows);
     static const char *const wrong[][2] = {
         {"", "no JSON"},
-        {"[]", "array of rungs"},
+        {"[]", "array of configurations"},
         {"[{}]", "name"},
         {"[{\"name\": \"../a\"}]", "../a"},
         {"[{\"name\": \"a\", \"preset\": \"best\"}]", "preset"},
@@ -103,10 +103,10 @@ static void test_sweeps_in_files(void **state)
         {"[{\"name\": \"a\", \"set\": {\"nothing\": 1}}]", "nothing"},
         {"[{\"name\": \"a\", \"set\": {\"lights.0.intensity\": 1}}]", "lights.0.intensity"},
         {"[{\"name\": \"a\", \"set\": {\"cone_step\": 99}}]", "cone_step"},
-        {"[{\"name\": \"a\"}, {\"name\": \"a\"}]", "two rungs"},
+        {"[{\"name\": \"a\"}, {\"name\": \"a\"}]", "two configurations"},
     };
     for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
-        write_file("ladder.json", wrong[i][0]);
+        write_file("sweep.json", wrong[i][0]);
         if (sweep_load(path, sweep, &error) || !strstr(error.message, wrong[i][1]))
             fail_msg("%s: \"%s\"", wrong[i][0], error.message);
     }
@@ -173,7 +173,7 @@ static void test_pareto_front(void **state)
 static int run_accuracy(const char *size)
 {
     char sweep[256];
-    name_file(sweep, "ladder.json");
+    name_file(sweep, "sweep.json");
     const char *const words[] = {"accuracy",        "builtin:cornell",
                                  "--out",           folder,
                                  "--ladder",        sweep,
@@ -222,15 +222,15 @@ static void test_a_run(void **state)
         "results.json",   "results.csv",    "results.js",        "index.html",    "report.js",
         "error_chart.js", "chart_view.js",  "reference.pfm",     "reference.png", "none-strip.png",
         "half-error.png", "half-strip.png", "half-converged.png"};
-    write_file("ladder.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}]");
+    write_file("sweep.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}]");
     assert_int_equal(run_accuracy("48x27"), 0);
     // A second configuration is measured; the first is not measured again.
     cJSON *results = read_results();
     double first_ms =
         at(at(cJSON_GetArrayItem(at(results, "rungs"), 0), "frame_ms"), "median")->valuedouble;
     cJSON_Delete(results);
-    write_file("ladder.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}, "
-                              "{\"name\": \"half\", \"scale\": 0.5, \"preset\": \"draft\"}]");
+    write_file("sweep.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}, "
+                             "{\"name\": \"half\", \"scale\": 0.5, \"preset\": \"draft\"}]");
     assert_int_equal(run_accuracy("48x27"), 0);
     for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++)
         assert_file(files[i]);
@@ -258,7 +258,7 @@ static void test_a_run(void **state)
     assert_true(at(noise, "reference")->valuedouble < 0.5 * at(dark, "rmse")->valuedouble);
     cJSON_Delete(results);
     // Another set-up starts anew.
-    write_file("ladder.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}]");
+    write_file("sweep.json", "[{\"name\": \"none\", \"set\": {\"gi_method\": \"none\"}}]");
     assert_int_equal(run_accuracy("32x18"), 0);
     results = read_results();
     assert_int_equal(cJSON_GetArraySize(at(results, "rungs")), 1);

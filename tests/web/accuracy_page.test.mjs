@@ -141,11 +141,11 @@ test('PNG files hold what was written', () => {
   const picture = gradient();
   writePng(path, picture);
   assert.deepEqual(readPng(path), picture);
-  writeFileSync(path, 'no picture at all');
+  writeFileSync(path, 'no image at all');
   assert.throws(() => readPng(path), /is no PNG file/);
 });
 
-test('pictures are cut, made smaller by means, larger by repetition, and set side by side', () => {
+test('images are cut, made smaller by means, larger by repetition, and set side by side', () => {
   const picture = makePicture(4, 2);
   picture.rgb.set([0, 10, 20, 30, 40, 50, 60, 70].flatMap((value) => [value, value, value]));
   const reds = ({ rgb }) => [...rgb].filter((_, i) => i % 3 === 0);
@@ -204,7 +204,7 @@ function writeResults(out, results) {
   writePng(join(out, 'cornell', 'error.png'), errorMap({ x: 10, y: 20 }));
 }
 
-test('the page has curve, tables, marks of noise, pictures and the reasons', () => {
+test('the page has curve, tables, marks of noise, images and the reasons', () => {
   const [out, docs] = ['out', 'docs'].map((name) => join(folder, name));
   writeResults(out, RESULTS);
   const { status, stderr } = run(

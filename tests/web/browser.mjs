@@ -133,7 +133,7 @@ export function pixels(page) {
 
 /** The mean difference (0 to 255) of two images of one size. */
 export function difference(a, b) {
-  if (a.length !== b.length) throw new Error('the pictures differ in size');
+  if (a.length !== b.length) throw new Error('the images differ in size');
   let sum = 0;
   for (let i = 0; i < a.length; i++) sum += Math.abs(a[i] - b[i]);
   return sum / a.length;

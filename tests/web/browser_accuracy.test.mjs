@@ -242,7 +242,7 @@ describe('the tab of accuracy', () => {
     await calls();
   });
 
-  test('a point shows its setting, figures and picture, by mouse and by keys', async () => {
+  test('a point shows its setting, figures and image, by mouse and by keys', async () => {
     const tip = page.locator('.error-tip');
     await point('draft').hover();
     assert.match(
@@ -297,7 +297,7 @@ describe('the tab of accuracy', () => {
     await setBudget(0);
     assert.match(
       await text(),
-      /Within 16 ms: none, LDR-FLIP 0\.5, 10 ms a frame, 500 ms to the final picture/,
+      /Within 16 ms: none, LDR-FLIP 0\.5, 10 ms a frame, 500 ms to the final image/,
     );
     await setBudget(1);
     assert.match(
@@ -333,7 +333,7 @@ describe('the tab of accuracy', () => {
   test('the reference lies right of a line that mouse and keys move', async () => {
     await mode('split').check();
     const divider = page.getByRole('slider', {
-      name: 'Line between live picture and reference image',
+      name: 'Line between live image and reference image',
     });
     const reference = page.locator('#comparison-pictures img').first();
     assert.match(await reference.getAttribute('src'), /accuracy\/m3\/reference\.png$/);
@@ -376,7 +376,7 @@ describe('the tab of accuracy', () => {
     const pose = await page.evaluate(() => globalThis.voxcast.camera.pose);
     await page.evaluate(() => globalThis.voxcast.camera.orbit(0.2, 0));
     const hint = page.locator('#comparison .stage-hint');
-    assert.match(await hint.innerText(), /The camera is not where the picture was measured/);
+    assert.match(await hint.innerText(), /The camera is not where the image was measured/);
     assert.ok(!(await page.locator('.heat-legend').isVisible()));
     await hint.getByRole('button', { name: 'Back to the measured view' }).click();
     assert.ok(!(await hint.isVisible()));

@@ -73,7 +73,7 @@ describe('the tab of accuracy and the daemon', () => {
     assert.equal(setup.width, WIDTH);
   });
 
-  test('a point shows its picture, and a click draws with it', async () => {
+  test('a point shows its image, and a click draws with it', async () => {
     await point('none').hover();
     await page.waitForFunction(() => document.querySelector('.error-tip img').naturalWidth > 0);
     const before = await pixels(page);
@@ -105,7 +105,7 @@ describe('the tab of accuracy and the daemon', () => {
     await isLoaded(0);
     assert.ok(
       await page
-        .getByRole('slider', { name: 'Line between live picture and reference image' })
+        .getByRole('slider', { name: 'Line between live image and reference image' })
         .isVisible(),
     );
     await page.locator('input[value=error]').check();

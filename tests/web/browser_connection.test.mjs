@@ -21,7 +21,7 @@ describe('a server that goes away', () => {
     await stopDaemon(daemon);
   });
 
-  test('is found again, with the picture from the same camera', async () => {
+  test('is found again, with the image from the same camera', async () => {
     const { page } = browser;
     await openClient(page, daemon);
     await page.mouse.move(500, 400);

@@ -31,7 +31,7 @@ describe('edits', () => {
     await stopDaemon(daemon);
   });
 
-  test('a fixed exposure and an added light brighten the picture', async () => {
+  test('a fixed exposure and an added light brighten the image', async () => {
     const { page } = ours;
     await page.locator('#tab-light').click();
     await page
@@ -50,7 +50,7 @@ describe('edits', () => {
     assert.ok(dim < lit - 5, `${lit} became ${dim}`);
   });
 
-  test('the other browser sees the same light and the picture with it', async () => {
+  test('the other browser sees the same light and the image with it', async () => {
     const { page } = theirs;
     await page.locator('#tab-light').click();
     assert.equal(await page.locator('[data-light]').count(), 1);

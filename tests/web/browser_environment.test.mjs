@@ -37,7 +37,7 @@ describe('environment images', () => {
 
   const loader = () => page.locator('.loader', { has: page.locator('#environment-image') });
 
-  test('a loaded image colours the picture and is shown as chosen', async () => {
+  test('a loaded environment colours the image and is shown as chosen', async () => {
     assert.deepEqual(await page.locator('#environment-image option').allTextContents(), [
       'broken.hdr',
       'red.hdr',

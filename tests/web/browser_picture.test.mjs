@@ -10,7 +10,7 @@ import { difference, meanColor, openScene, pixels, untilAtRest } from './browser
 const require = createRequire(new URL('../../web_client/package.json', import.meta.url));
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
-describe('the picture', () => {
+describe('the image', () => {
   let client, page;
 
   before(async () => {
@@ -130,7 +130,7 @@ describe('the picture', () => {
     });
   }
 
-  test('a phone sees the picture above the panel', async () => {
+  test('a phone sees the image above the panel', async () => {
     const stage = await page.locator('#stage').boundingBox();
     const panel = await page.locator('#panel').boundingBox();
     assert.ok(stage.height > 300 && stage.width === 390);

@@ -24,7 +24,7 @@ describe('the tab of rendering', () => {
   const parameter = (name) => page.locator(`[data-parameter="${name}"]`);
   const setting = async (name) => (await other.call('scene.get')).result.settings[name];
 
-  test('tells the quality of the picture and that it is done', async () => {
+  test('tells the quality of the image and that it is done', async () => {
     await page.evaluate(() => globalThis.voxcast.view.configure({ quality: 'final' }));
     await page.waitForFunction(() =>
       /final\s+done/.test(document.getElementById('badge').innerText),
@@ -112,7 +112,7 @@ describe('the tab of rendering', () => {
     assert.equal(effects.find(({ name }) => name === 'transparency').on, false);
   });
 
-  test('a chosen quality is the one the picture rests at', async () => {
+  test('a chosen quality is the one the image rests at', async () => {
     await parameter('settings.gi_method').locator('select').selectOption({ label: 'None' });
     await parameter('view.quality').locator('select').selectOption({ label: 'High' });
     await page.waitForFunction(() =>

@@ -172,7 +172,7 @@ test('framing shows all of a ball', () => {
   }
 });
 
-test('the picture keeps the shape of its stage within all limits', () => {
+test('the image keeps the shape of its stage within all limits', () => {
   const server = { isSoftware: false, maxWidth: 3840, maxHeight: 2160 };
   assert.deepEqual(chooseViewSize({ width: 800, height: 600 }, 1, 'auto', server), {
     width: 800,

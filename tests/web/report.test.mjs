@@ -112,7 +112,7 @@ describe('the report of an accuracy run', () => {
     await page.locator('select[name=metric]').selectOption({ label: 'LDR-FLIP' });
   });
 
-  test('shows setting and picture of a point', async () => {
+  test('shows setting and image of a point', async () => {
     await page.locator('.point').nth(1).hover();
     const tip = page.locator('#tip');
     assert.match(
@@ -130,7 +130,7 @@ describe('the report of an accuracy run', () => {
     assert.equal(await tip.isVisible(), false);
   });
 
-  test('opens the pictures of a point, with the times of its passes', async () => {
+  test('opens the images of a point, with the times of its passes', async () => {
     await page.locator('.point').nth(1).click();
     const strip = page.locator('#strip-good');
     assert.match(await strip.locator('img').getAttribute('src'), /good-strip\.png/);
@@ -147,14 +147,14 @@ describe('the report of an accuracy run', () => {
     assert.match(await page.locator('#noise').innerText(), /not known/);
   });
 
-  test('changes to first pictures and to other times', async () => {
+  test('changes to first images and to other times', async () => {
     await page.locator('select[name=metric]').selectOption({ label: 'LDR-FLIP' });
-    await page.locator('select[name=state]').selectOption({ label: 'first picture' });
+    await page.locator('select[name=state]').selectOption({ label: 'first image' });
     const row = page.locator('tr', { hasText: 'good' });
     assert.match(await row.innerText(), /0\.2/);
     await page.locator('select[name=part]').selectOption({ label: 'indirect light alone' });
     assert.match(await page.locator('#chart').innerHTML(), /No setting has values/);
-    await page.locator('select[name=state]').selectOption({ label: 'final picture' });
+    await page.locator('select[name=state]').selectOption({ label: 'final image' });
     await page.locator('select[name=time]').selectOption({ index: 3 });
     assert.match(await page.locator('#chart').innerHTML(), /from an edit of a light/);
   });

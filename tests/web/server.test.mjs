@@ -368,7 +368,7 @@ test('keeps the last good texture while its file is broken', async () => {
     return Object.keys(materials.find((m) => m.name === 'm').textures).length;
   };
   assert.equal(await textures(), 1);
-  writeFileSync(join(folder, 'colour.tga'), 'no picture');
+  writeFileSync(join(folder, 'colour.tga'), 'no image');
   const notice = await client.until(
     () => client.notifications.find((n) => n.method === 'session.notice'), 'a notice');
   assert.match(notice.params.message, /colour\.tga/);

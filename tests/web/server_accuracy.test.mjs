@@ -28,7 +28,7 @@ async function arrive(daemon, view = {}) {
 const settled = (client, from = 0) =>
   client.until(
     () => client.frames.slice(from).find(({ converged }) => converged),
-    'a picture at rest',
+    'an image at rest',
   );
 
 const progress = (client, id) =>
@@ -79,7 +79,7 @@ async function look(client, x, revision) {
       client.frames
         .slice(from)
         .find((frame) => frame.converged && frame.cameraRevision === revision),
-    'the picture of a camera',
+    'the image of a camera',
     60000,
   );
 }
@@ -383,7 +383,7 @@ describe('accuracy', () => {
     );
     const bad = await client.call('view.configure', { rung: 'best', width: 32 });
     assert.equal(bad.error?.data.field, 'rung');
-    assert.match(bad.error.message, /no rung "best"; measured are live, none, draft/);
+    assert.match(bad.error.message, /no configuration "best"; measured are live, none, draft/);
     assert.equal(
       (await client.call('view.configure', {})).result.width,
       64,

@@ -269,7 +269,7 @@ describe('a full disk', () => {
   });
 });
 
-test('a lost context costs pictures, but neither clients nor edits', async () => {
+test('a lost context costs images, but neither clients nor edits', async () => {
   const daemon = await startDaemon(['--scene', 'builtin:cornell'], {
     env: { VOXCAST_LOSE_CONTEXT: '12' },
   });

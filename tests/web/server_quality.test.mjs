@@ -92,7 +92,7 @@ describe('quality', () => {
     await client.close();
   });
 
-  test('takes the wanted row for still pictures, and for all without adaption', async () => {
+  test('takes the wanted row for still images, and for all without adaption', async () => {
     const client = await hello(daemon, { quality: 'high' });
     await converged(client, HIGH);
     const before = client.frames.at(-1).frameId;
@@ -126,7 +126,7 @@ describe('quality', () => {
     await client.call('settings.update', { set: { gi_method: 'grid' } });
     await client.until(() => client.frames.length > first + 3, 'several frames of one state');
     await client.call('view.configure', {});
-    assert.ok(!client.frames.at(-1).converged, 'a command does not wait for the picture');
+    assert.ok(!client.frames.at(-1).converged, 'a command does not wait for the image');
     await client.untilAtRest(1500);
     const frames = client.frames.slice(first);
     assert.ok(

@@ -95,7 +95,7 @@ function describePick(
       `Nothing measured keeps ${name}: the fastest, ${configurationTitle(fastest.name)}, takes ` +
       `${msText(fastest.frame_ms.median)} a frame (${errorText(fastest)}).`
     );
-  const untilFinal = `, ${msText(best.converged.ms)} to the final picture`;
+  const untilFinal = `, ${msText(best.converged.ms)} to the final image`;
   const budget = name === 'still' ? 'When time does not matter' : `Within ${name}`;
   return (
     `${budget}: ${configurationTitle(best.name)}, ${errorText(best)}, ` +

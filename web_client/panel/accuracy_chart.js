@@ -159,7 +159,7 @@ export class AccuracyChart {
         isCold ? configuration.pictures.strip : configuration.pictures.converged,
       ),
       alt:
-        `${isCold ? 'Reference image, first and final picture and error' : 'Final picture'} of ` +
+        `${isCold ? 'Reference image, first and final image and error' : 'Final image'} of ` +
         `${configuration.name}`,
       style: `aspect-ratio:${isCold ? 4 * width : width}/${height}`,
     });

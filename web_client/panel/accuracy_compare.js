@@ -32,7 +32,7 @@ export class AccuracyCompare {
     root.append(
       element(
         'div',
-        { class: 'segments', role: 'radiogroup', 'aria-label': 'Over the picture' },
+        { class: 'segments', role: 'radiogroup', 'aria-label': 'Over the image' },
         ...labels,
       ),
       this.text,
@@ -99,15 +99,15 @@ export class AccuracyCompare {
   #describe(/** @type {boolean} */ hasReference, /** @type {any} */ shown) {
     if (!hasReference)
       return this.app.measurement.isRunning
-        ? 'The reference image can be laid beside the picture once the first setting has been ' +
+        ? 'The reference image can be laid beside the image once the first setting has been ' +
             'measured.'
-        : 'Measure the view first: then the reference image can be laid beside the picture.';
+        : 'Measure the view first: then the reference image can be laid beside the image.';
     if (this.mode === 'split')
       return (
-        'Drag the line over the picture, or move it by the arrow keys: live on its left, ' +
+        'Drag the line over the image, or move it by the arrow keys: live on its left, ' +
         'reference image on its right.'
       );
-    if (this.mode === 'error') return `Where the final picture of ${shown.name} errs, by LDR-FLIP.`;
+    if (this.mode === 'error') return `Where the final image of ${shown.name} errs, by LDR-FLIP.`;
     return '';
   }
 

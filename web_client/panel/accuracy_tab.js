@@ -33,7 +33,7 @@ export class AccuracyTab {
       this.drawn,
       element('h2', {}, 'Time for a frame'),
       budget,
-      element('h2', {}, 'Over the picture'),
+      element('h2', {}, 'Over the image'),
       compare,
     );
     this.edits = new EditWatch(app.connection, app.document, measurement);

@@ -44,7 +44,7 @@ export class MaterialTab {
         element(
           'p',
           { class: 'hint' },
-          'Click a surface in the picture, or choose a material above.',
+          'Click a surface in the image, or choose a material above.',
         ),
       );
       return;

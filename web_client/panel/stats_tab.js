@@ -12,7 +12,7 @@ const BOTTLENECKS = /** @type {Record<string, string>} */ ({
   encode: 'Making JPEGs on the server',
   network: 'The network',
   client: 'This browser',
-  none: 'Nothing: the picture is at rest',
+  none: 'Nothing: the image is at rest',
 });
 
 const bytes = (/** @type {number} */ count) =>

@@ -29,13 +29,13 @@ globalThis.errorChart = (() => {
       get: (configuration) => configuration.frame_ms.median,
     },
     cold: {
-      title: 'first picture of a scene just loaded, ms',
-      short: 'first picture, ms',
+      title: 'first image of a scene just loaded, ms',
+      short: 'first image, ms',
       get: (configuration) => configuration.cold.ms,
     },
     converged: {
-      title: 'from the loaded scene to the final picture, ms',
-      short: 'final picture, ms',
+      title: 'from the loaded scene to the final image, ms',
+      short: 'final image, ms',
       get: (configuration) => configuration.converged.ms,
     },
     edit: {
@@ -44,7 +44,7 @@ globalThis.errorChart = (() => {
       get: (configuration) => configuration.edit?.arrived_ms,
     },
   };
-  const STATES = { converged: 'final picture', cold: 'first picture' };
+  const STATES = { converged: 'final image', cold: 'first image' };
   const PARTS = { metrics: 'all light', indirect: 'indirect light alone' };
   const FIRST_CHOICE = { metric: 'ldr_flip', time: 'frame', state: 'converged', part: 'metrics' };
 

@@ -34,7 +34,7 @@
       `${short(configuration.memory_bytes / 1048576)} MiB`;
     const picture = document.createElement('img');
     picture.src = configuration.pictures.converged;
-    picture.alt = `Final picture of ${configuration.name}`;
+    picture.alt = `Final image of ${configuration.name}`;
     tip.append(title, text, picture);
     tip.hidden = false;
     // The chart may be drawn smaller than its own coordinates.
@@ -63,7 +63,7 @@
     const noise = globalThis.results.noise[choice.part]?.[choice.metric];
     document.getElementById('noise').textContent = noise
       ? `By this measure the reference image itself errs by ${short(noise.reference)}; the ` +
-        `smallest error of a final picture is ${short(noise.smallest)}. ` +
+        `smallest error of a final image is ${short(noise.smallest)}. ` +
         (noise.enough
           ? 'That is little enough.'
           : 'That is more than a tenth: it needs more samples.')
@@ -118,7 +118,7 @@
       picture.loading = 'lazy';
       picture.src = configuration.pictures.strip;
       picture.alt =
-        'Reference image, first picture, final picture and error of ' + configuration.name;
+        'Reference image, first image, final image and error of ' + configuration.name;
       const passes = document.createElement('p');
       const times = Object.entries(configuration.pass_ms ?? {}).sort(([, a], [, b]) => b - a);
       const passTimes = times.map(([name, ms]) => `${name} ${short(ms)}`).join(', ');

@@ -13,7 +13,7 @@ export class PictureBadge {
     this.root = root;
     this.row = element('span', { class: 'row-name' });
     this.fraction = element('span', { class: 'fraction' });
-    this.bar = element('progress', { max: 1, 'aria-label': 'How far the picture has come' });
+    this.bar = element('progress', { max: 1, 'aria-label': 'How far the image has come' });
     root.replaceChildren(this.row, this.fraction, this.bar);
   }
 

@@ -5,8 +5,8 @@ const STEP = 0.02;
 const LARGE_STEP = 0.1;
 
 const OBSTACLES = {
-  camera: 'The camera is not where the picture was measured.',
-  shape: 'The picture has another shape than the measured one. Measure again to compare.',
+  camera: 'The camera is not where the image was measured.',
+  shape: 'The image has another shape than the measured one. Measure again to compare.',
 };
 
 /**
@@ -73,7 +73,7 @@ export class Comparison extends EventTarget {
         class: 'divider',
         role: 'slider',
         tabindex: 0,
-        'aria-label': 'Line between live picture and reference image',
+        'aria-label': 'Line between live image and reference image',
         'aria-valuemin': 0,
         'aria-valuemax': 100,
         'aria-orientation': 'horizontal',

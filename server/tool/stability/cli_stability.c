@@ -15,7 +15,7 @@ static const char usage[] =
     "\n"
     "  --case NAME    only this case\n"
     "  --family NAME  only the cases of this family\n"
-    "  --out DIR      write pictures and results.json there\n"
+    "  --out DIR      write images and results.json there\n"
     "  --list         print the cases; run none\n"
     "  --gpu auto|software|N\n";
 

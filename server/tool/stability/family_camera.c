@@ -29,7 +29,7 @@ static void draw_from(struct stability_run *run, struct stage *stage,
         const struct picture *drawn = reference ? &picture : &view.picture;
         stability_measure(run, (double)run->bad_values, "%s", cameras[i].name);
         if (!(stability_mean(drawn) > 0.0))
-            stability_fail(run, "%s: the picture is black", cameras[i].name);
+            stability_fail(run, "%s: the image is black", cameras[i].name);
         stability_keep(run, drawn, cameras[i].name);
         picture_finish(&picture);
     }
@@ -55,7 +55,7 @@ static void run_positions(struct stability_run *run)
         float target[3];
     } camera_positions[] = {
         {"in-the-box", {-0.75f, 0.5f, -0.75f}, {0.0f, 1.0f, 1.0f}},
-        {"in-the-lamp", {0.5f, 2.25f, 0.5f}, {0.0f, 1.0f, -1.0f}},
+        {"in-the-light", {0.5f, 2.25f, 0.5f}, {0.0f, 1.0f, -1.0f}},
         {"on-the-floor", {0.25f, 0.0f, 1.5f}, {0.0f, 0.0f, -1.0f}},
         {"on-a-corner", {-0.25f, 1.0f, -0.25f}, {1.0f, 1.0f, 1.0f}},
         {"in-a-wall-s-plane", {-2.0f, 1.0f, 1.5f}, {-2.0f, 1.0f, -1.0f}},
@@ -218,7 +218,7 @@ static void run_teleport(struct stability_run *run)
 
 static const struct stability_case cases[] = {
     {.name = "camera-places",
-     .invariant = "in a solid, in a lamp, on surfaces: finite and not black",
+     .invariant = "in a solid, in a light, on surfaces: finite and not black",
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "values not finite",
@@ -230,13 +230,13 @@ static const struct stability_case cases[] = {
      .unit = "values not finite",
      .run = run_directions},
     {.name = "camera-lenses",
-     .invariant = "at 1 and 179 degrees each pixel is what a picture of it alone shows",
+     .invariant = "at 1 and 179 degrees each pixel is what an image of it alone shows",
      .methods = STABILITY_NONE,
      .bound = 0.002,
      .unit = "of the brightest",
      .run = run_lenses},
     {.name = "camera-shapes",
-     .invariant = "in 1x1, 4096x17 and 17x2160 each pixel is what a picture of it alone shows",
+     .invariant = "in 1x1, 4096x17 and 17x2160 each pixel is what an image of it alone shows",
      .methods = STABILITY_NONE,
      .bound = 0.002,
      .unit = "of the brightest",
@@ -248,7 +248,7 @@ static const struct stability_case cases[] = {
      .unit = "of the card",
      .run = run_near},
     {.name = "camera-teleport",
-     .invariant = "kilometres away and back, the picture settles to what it was",
+     .invariant = "kilometres away and back, the image converges to what it was",
      .methods = STABILITY_DRAWN,
      .bound = 0.004,
      .voxel_bound = 0.016, // light has converged when 0.8 % are still to come, in either image

@@ -114,7 +114,7 @@ static void run_threads(struct stability_run *run)
     char folder[] = "/tmp/voxcast-stability-XXXXXX";
     struct picture one, two;
     if (!mkdtemp(folder)) {
-        stability_fail(run, "no folder for pictures");
+        stability_fail(run, "no folder for images");
         return;
     }
     if (draw_with_threads(run, 1, folder, &one)) {
@@ -197,7 +197,7 @@ static void run_edits(struct stability_run *run)
 
 static const struct stability_case cases[] = {
     {.name = "same-run",
-     .invariant = "a renderer that starts afresh draws the same picture",
+     .invariant = "a renderer that starts afresh draws the same image",
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "channels changed",
@@ -212,14 +212,13 @@ static const struct stability_case cases[] = {
      .known = 5e-5,
      .run = run_shuffled},
     {.name = "same-threads",
-     .invariant = "1 and 2 threads draw the same picture",
+     .invariant = "1 and 2 threads draw the same image",
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "channels changed",
      .run = run_threads},
     {.name = "same-edit-order",
-     .invariant =
-         "independent edits, in either order or before the first frame, end in one picture",
+     .invariant = "independent edits, in either order or before the first frame, end in one image",
      .methods = STABILITY_DRAWN,
      .bound = 0.0,
      .unit = "channels changed",

@@ -246,9 +246,9 @@ static const struct stability_case cases[] = {
      .bound = 0.0,
      .unit = "values not finite",
      .run = run_white},
-    {.name = "energy-lamp-out",
+    {.name = "energy-light-out",
      .invariant =
-         "when the lamp goes out, half of the light is gone within so many frames; then all",
+         "when the light goes out, half of the light is gone within so many frames; then all",
      .methods = STABILITY_VOXELS,
      .bound = 2.0, // measured: 1
      .unit = "frames",
@@ -270,7 +270,7 @@ static const struct stability_case cases[] = {
      .known = 0.9,
      .run = run_specular_rays},
     {.name = "energy-per-bounce",
-     .invariant = "each bounce adds to the stage what it adds to the reference's picture",
+     .invariant = "each bounce adds to the stage what it adds to the reference image",
      .methods = STABILITY_VOXELS,
      .bound = 0.067, // measured: 0.0339
      .unit = "of the reference's",

@@ -64,7 +64,7 @@ static bool draw_frame(struct faults *faults, struct view *view, struct error *o
     if (collected)
         renderer_view_release(faults->renderer, view);
     else
-        error_set(out_error, "the picture could not be read back");
+        error_set(out_error, "the image could not be read back");
     return collected;
 }
 
@@ -74,7 +74,7 @@ static void check_reference(struct faults *faults, uint32_t number)
     struct picture picture;
     if (!stability_draw(faults->run, faults->stage.scene, &faults->params, &picture))
         return;
-    note(faults, stability_count_changed(&picture, &faults->expected) == 0, "another picture",
+    note(faults, stability_count_changed(&picture, &faults->expected) == 0, "another image",
          number);
     picture_finish(&picture);
 }
@@ -174,19 +174,19 @@ static void run_context(struct stability_run *run)
 static const struct stability_case cases[] = {
     {.name = "memory-ends",
      .invariant = "whichever allocation of the GPU fails while a scene is shown and drawn, there "
-                  "is a reason, and with memory again the same view goes on to the same picture",
+                  "is a reason, and with memory again the same view goes on to the same image",
      .methods = STABILITY_DRAWN,
      .unit = "broken",
      .run = run_memory},
     {.name = "shaders-fail",
      .invariant = "whichever shader does not compile, there is a reason, and once it does the "
-                  "same view goes on to the same picture",
+                  "same view goes on to the same image",
      .methods = STABILITY_DRAWN,
      .unit = "broken",
      .run = run_programs},
     {.name = "context-lost",
      .invariant = "when the context is lost every frame fails with a reason, and another renderer "
-                  "draws the same picture",
+                  "draws the same image",
      .methods = STABILITY_DRAWN,
      .unit = "broken",
      .run = run_context},

@@ -380,7 +380,7 @@ static const struct stability_case cases[] = {
      .run = hostile_run_edits},
     {.name = "extremes-drawn",
      .invariant = "each parameter of lights, materials, nodes, environment, settings and camera "
-                  "draws finite pictures at both ends of its range",
+                  "draws finite images at both ends of its range",
      .methods = STABILITY_DRAWN,
      .unit = "values",
      .run = hostile_run_drawn},

@@ -200,7 +200,7 @@ static void run_thousand(struct stability_run *run)
     if (!draw_many(run, 1, &one))
         return;
     if (draw_many(run, MANY_LIGHTS, &many)) {
-        stability_compare(run, &many, &one, "1000 lamps");
+        stability_compare(run, &many, &one, "1000 lights");
         picture_finish(&many);
     }
     picture_finish(&one);
@@ -222,7 +222,7 @@ static void run_none(struct stability_run *run)
 
 static const struct stability_case cases[] = {
     {.name = "light-intensities",
-     .invariant = "lamps of 1e-6 to 1e9 cd give pictures that differ by that factor alone",
+     .invariant = "lights of 1e-6 to 1e9 cd give images that differ by that factor alone",
      .methods = STABILITY_ALL,
      .bound = 0.0001,
      .voxel_bound = 0.005,
@@ -235,19 +235,19 @@ static const struct stability_case cases[] = {
      .unit = "values taken",
      .run = run_refused},
     {.name = "light-no-intensity",
-     .invariant = "lamps whose intensity is NaN, negative or infinite give no light",
+     .invariant = "lights whose intensity is NaN, negative or infinite give no light",
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "cd/m^2",
      .run = run_no_intensity},
     {.name = "light-places",
-     .invariant = "lamps on surfaces, in corners, in the middle of a voxel, at the camera: finite",
+     .invariant = "lights on surfaces, in corners, in the middle of a voxel, at the camera: finite",
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "values not finite",
      .run = run_positions},
     {.name = "light-in-solid",
-     .invariant = "a lamp in a closed box leaves the room dark",
+     .invariant = "a light in a closed box leaves the room dark",
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .voxel_bound = 0.001,
@@ -266,13 +266,13 @@ static const struct stability_case cases[] = {
      .unit = "of a point's",
      .run = run_closed_spot},
     {.name = "light-thousand",
-     .invariant = "a thousand lamps in one place look as one of their sum",
+     .invariant = "a thousand lights at one position look as one of their sum",
      .methods = STABILITY_NONE | STABILITY_CLIPMAP | STABILITY_REFERENCE,
      .bound = 0.01,
      .unit = OF_BRIGHTEST,
      .run = run_thousand},
     {.name = "light-none",
-     .invariant = "without any light the picture is black",
+     .invariant = "without any light the image is black",
      .methods = STABILITY_ALL,
      .bound = 0.0,
      .unit = "cd/m^2",

@@ -240,7 +240,7 @@ static void run_bright_and_dim(struct stability_run *run)
                   (const float[3]){i == 0 ? -1.25f : 1.25f, 1.5f, -0.5f});
     }
     if (stage_draw(run, &stage, &picture)) {
-        stability_measure(run, (double)run->bad_values, "picture");
+        stability_measure(run, (double)run->bad_values, "image");
         stability_keep(run, &picture, "drawn");
         picture_finish(&picture);
     }

@@ -82,7 +82,7 @@ static const char *check_materials(const struct scene *scene)
             const struct scene_texture *texture = &material->textures[slot];
             if ((texture->image != SCENE_NONE && texture->image >= scene->image_count) ||
                 texture->uv_set > 1)
-                return "a texture's picture is not there";
+                return "a texture's image is not there";
         }
         if (!isfinite(material->emissive_strength) || !are_finite(material->base_color, 4) ||
             !(material->roughness >= 0.0f && material->roughness <= 1.0f) ||

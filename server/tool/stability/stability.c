@@ -182,7 +182,7 @@ static bool take_picture(struct stability_view *view, const struct frame_pixels 
     }
     view->run->bad_values += bad;
     if (bad > 0)
-        stability_fail(view->run, "frame %u: %u values of the picture are not finite or negative",
+        stability_fail(view->run, "frame %u: %u values of the image are not finite or negative",
                        view->run->frames, bad);
     return true;
 }
