@@ -3,7 +3,8 @@
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
+
+#include "server/accuracy/statistics_json.h"
 
 bool measurement_add(struct measurement *measurement, const struct frame_statistics *statistics)
 {
@@ -33,6 +34,17 @@ static void add_quantiles(cJSON *object, const char *name, const struct samples 
     cJSON_AddNumberToObject(quantiles, "p95", round_to(samples_quantile(samples, 0.95), 1e-3));
 }
 
+static void add_pass_quantiles(cJSON *pass, const struct frame_statistics *statistics,
+                               uint32_t index, const void *user)
+{
+    (void)statistics;
+    const struct measurement *measurement = user;
+    const struct samples *pass_ms = &measurement->pass_ms[index];
+    cJSON_AddBoolToObject(pass, "ran", pass_ms->count > 0);
+    cJSON_AddNumberToObject(pass, "frames", pass_ms->count);
+    add_quantiles(pass, "ms", pass_ms);
+}
+
 cJSON *measurement_json(const struct measurement *measurement,
                         const struct frame_statistics *statistics, const struct renderer_info *info,
                         const struct scene *scene, uint32_t width, uint32_t height)
@@ -44,33 +56,10 @@ cJSON *measurement_json(const struct measurement *measurement,
     cJSON_AddStringToObject(root, "size", size);
     cJSON_AddNumberToObject(root, "frames", measurement->frame_ms.count);
     add_quantiles(root, "frame_ms", &measurement->frame_ms);
-    cJSON *passes = cJSON_AddArrayToObject(root, "passes");
-    for (uint32_t i = 0; i < statistics->pass_count; i++) {
-        const struct pass_statistics *pass = &statistics->passes[i];
-        cJSON *entry = cJSON_CreateObject();
-        cJSON_AddStringToObject(entry, "name", pass->name);
-        cJSON_AddBoolToObject(entry, "ran", measurement->pass_ms[i].count > 0);
-        cJSON_AddNumberToObject(entry, "frames", measurement->pass_ms[i].count);
-        add_quantiles(entry, "ms", &measurement->pass_ms[i]);
-        cJSON_AddStringToObject(entry, "reason", pass->reason);
-        cJSON_AddItemToArray(passes, entry);
-    }
-    cJSON *effects = cJSON_AddArrayToObject(root, "effects");
-    for (uint32_t i = 0; i < statistics->effect_count; i++) {
-        cJSON *entry = cJSON_CreateObject();
-        cJSON_AddStringToObject(entry, "name", statistics->effects[i].name);
-        cJSON_AddBoolToObject(entry, "on", statistics->effects[i].on);
-        cJSON_AddStringToObject(entry, "reason", statistics->effects[i].reason);
-        cJSON_AddItemToArray(effects, entry);
-    }
-    cJSON *memory = cJSON_AddObjectToObject(root, "memory_bytes");
-    for (uint32_t i = 0; i < statistics->memory_count; i++)
-        cJSON_AddNumberToObject(memory, statistics->memory[i].name,
-                                (double)statistics->memory[i].bytes);
-    cJSON *rejects = cJSON_AddObjectToObject(root, "rejects");
-    for (uint32_t i = 0; i < statistics->reject_count; i++)
-        cJSON_AddNumberToObject(rejects, statistics->rejects[i].name,
-                                (double)statistics->rejects[i].count);
+    statistics_add_json(root, statistics,
+                        &(struct statistics_format){.add_times = add_pass_quantiles,
+                                                    .user = measurement,
+                                                    .memory_key = "memory_bytes"});
     cJSON *contents = cJSON_AddObjectToObject(root, "scene");
     uint32_t lights = 0;
     for (uint32_t i = 0; i < scene->light_count; i++)

@@ -4,43 +4,15 @@
 #include <stdlib.h>
 
 #include "renderer/clock.h"
+#include "server/accuracy/statistics_json.h"
 
-static void add_amount(cJSON *list, const char *name, const char *key, double amount)
+static void add_pass_time(cJSON *pass, const struct frame_statistics *statistics, uint32_t index,
+                          const void *user)
 {
-    cJSON *item = cJSON_CreateObject();
-    cJSON_AddStringToObject(item, "name", name);
-    cJSON_AddNumberToObject(item, key, amount);
-    cJSON_AddItemToArray(list, item);
-}
-
-static void add_passes(cJSON *params, const struct frame_statistics *statistics)
-{
-    cJSON *passes = cJSON_AddArrayToObject(params, "passes");
-    for (uint32_t i = 0; i < statistics->pass_count; i++) {
-        const struct pass_statistics *pass = &statistics->passes[i];
-        cJSON *item = cJSON_CreateObject();
-        cJSON_AddStringToObject(item, "name", pass->name);
-        cJSON_AddBoolToObject(item, "ran", pass->ran);
-        cJSON_AddNumberToObject(item, "time_ms", pass->ran ? pass->time_ms : 0.0);
-        cJSON_AddStringToObject(item, "reason", pass->reason ? pass->reason : "");
-        cJSON_AddItemToArray(passes, item);
-    }
-    cJSON *effects = cJSON_AddArrayToObject(params, "effects");
-    for (uint32_t i = 0; i < statistics->effect_count; i++) {
-        cJSON *item = cJSON_CreateObject();
-        cJSON_AddStringToObject(item, "name", statistics->effects[i].name);
-        cJSON_AddBoolToObject(item, "on", statistics->effects[i].on);
-        cJSON_AddStringToObject(item, "reason", statistics->effects[i].reason);
-        cJSON_AddItemToArray(effects, item);
-    }
-    cJSON *memory = cJSON_AddArrayToObject(params, "memory");
-    for (uint32_t i = 0; i < statistics->memory_count; i++)
-        add_amount(memory, statistics->memory[i].name, "bytes",
-                   (double)statistics->memory[i].bytes);
-    cJSON *rejects = cJSON_AddArrayToObject(params, "rejects");
-    for (uint32_t i = 0; i < statistics->reject_count; i++)
-        add_amount(rejects, statistics->rejects[i].name, "count",
-                   (double)statistics->rejects[i].count);
+    (void)user;
+    bool ran = statistics->passes[index].ran;
+    cJSON_AddBoolToObject(pass, "ran", ran);
+    cJSON_AddNumberToObject(pass, "time_ms", ran ? statistics->passes[index].time_ms : 0.0);
 }
 
 // The stage that takes longest. Waiting for an acknowledgement counts only where it is longer than
@@ -109,7 +81,9 @@ void render_send_statistics(struct render_thread *thread, uint32_t slot)
     cJSON_AddNumberToObject(params, "jpeg_bytes", times.jpeg_bytes);
     cJSON_AddNumberToObject(params, "exposure", statistics->exposure);
     cJSON_AddNumberToObject(params, "clients", totals.client_count);
-    add_passes(params, statistics);
+    statistics_add_json(params, statistics,
+                        &(struct statistics_format){
+                            .add_times = add_pass_time, .memory_key = "memory", .lists = true});
     add_stages(params, client, &times);
     outbox_post(thread->params.outbox, client->client_id, rpc_write_notification("stats", params));
     client->statistics_due = false;
