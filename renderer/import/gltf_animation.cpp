@@ -33,8 +33,8 @@ static bool find_path(gltf_import &import, const std::string &name, enum scene_a
     } else if (name == "scale") {
         out = SCENE_PATH_SCALE;
     } else {
-        gltf_warn_once(import, "animations of '%s' are ignored",
-                       import_short_name(name, 40).c_str());
+        import_warn_once(import, "animations of '%s' are ignored",
+                         import_short_name(name, 40).c_str());
         return false;
     }
     return true;

@@ -9,12 +9,7 @@
 #include <tiny_gltf.h>
 #include <vector>
 
-#include "renderer/import/import_failure.hpp"
-
-extern "C" {
-#include "renderer/image/file_access.h"
-#include "renderer/scene/scene.h"
-}
+#include "renderer/import/import_job.hpp"
 
 // An accessor without data stands for zeros; accepts at most so many elements of them.
 #define GLTF_MAX_ZERO_ELEMENTS (1u << 20)
@@ -41,11 +36,7 @@ struct gltf_elements {
     bool normalized;
 };
 
-struct gltf_import {
-    struct scene *scene = nullptr;
-    std::string path;   // canonical; empty when the file came from memory
-    std::string folder; // canonical; empty to read no other files
-    struct asset_stamp stamp = {};
+struct gltf_import : import_job {
     nlohmann::json json; // checked by gltf_check_json(); buffers and images are read from it
     tinygltf::Model model;
     std::vector<gltf_buffer> buffers;
@@ -62,7 +53,6 @@ struct gltf_import {
     std::vector<uint32_t> node_ids;
     std::map<int, std::vector<uint8_t>> sparse; // resolved data by accessor
     uint64_t sparse_bytes = 0;
-    std::map<std::string, uint32_t> warned; // occurrences by text
 };
 
 // gltf_file.cpp: containers, JSON, buffers and images.
@@ -101,10 +91,6 @@ void gltf_import_nodes(gltf_import &import);
 void gltf_import_animations(gltf_import &import);
 
 // import_gltf.cpp
-
-// Adds a warning once per text, however often it occurs.
-void gltf_warn_once(gltf_import &import, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
 
 // The nearest finite float; `fallback` for NaN.
 float gltf_float(double value, float fallback);

@@ -73,7 +73,7 @@ static scene_texture make_texture(gltf_import &import, int index, int uv_set,
     if (image >= 0) {
         texture.image = import.image_ids[(size_t)image];
     } else {
-        gltf_warn_once(import, "textures[%d] has no picture in a supported format", index);
+        import_warn_once(import, "textures[%d] has no picture in a supported format", index);
     }
     if (source.sampler >= 0) {
         const tinygltf::Sampler &sampler = import.model.samplers[(size_t)source.sampler];
@@ -86,7 +86,7 @@ static scene_texture make_texture(gltf_import &import, int index, int uv_set,
         read_transform(import, transform->second, texture, uv_set);
     }
     if (uv_set > 1) {
-        gltf_warn_once(import, "TEXCOORD_%d is not supported: set 0 is used", uv_set);
+        import_warn_once(import, "TEXCOORD_%d is not supported: set 0 is used", uv_set);
         uv_set = 0;
     }
     texture.uv_set = (uint32_t)uv_set;
@@ -174,7 +174,7 @@ static void read_transmission(gltf_import &import, const tinygltf::ExtensionMap 
             channel = gltf_clamped(import, channel, 0, 1, "attenuation colour");
         }
         if (values.Has("thicknessTexture")) {
-            gltf_warn_once(import, "thickness textures are ignored: the factor holds everywhere");
+            import_warn_once(import, "thickness textures are ignored: the factor holds everywhere");
         }
     }
 }

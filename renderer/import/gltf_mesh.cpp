@@ -129,8 +129,8 @@ static void keep_triangles(gltf_import &import, const gltf_primitive &primitive,
                             : mode == GLTF_MODE_TRIANGLES ? corners.size() / 3
                                                           : corners.size() - 2;
     if (mode == GLTF_MODE_TRIANGLES && corners.size() % 3 != 0) {
-        gltf_warn_once(import, "%s: the incomplete last triangle is dropped",
-                       primitive.location.c_str());
+        import_warn_once(import, "%s: the incomplete last triangle is dropped",
+                         primitive.location.c_str());
     }
     size_t unusable = 0;
     out.reserve(triangle_count * 3);
@@ -153,10 +153,10 @@ static void keep_triangles(gltf_import &import, const gltf_primitive &primitive,
     }
     import.scene->rejects.triangles += (uint32_t)unusable;
     if (unusable > 0) {
-        gltf_warn_once(import,
-                       "%s: %zu triangles with positions that are not finite or beyond "
-                       "%g m are dropped",
-                       primitive.location.c_str(), unusable, (double)SCENE_MAX_COORDINATE_M);
+        import_warn_once(import,
+                         "%s: %zu triangles with positions that are not finite or beyond "
+                         "%g m are dropped",
+                         primitive.location.c_str(), unusable, (double)SCENE_MAX_COORDINATE_M);
     }
 }
 
@@ -197,8 +197,8 @@ static void read_uv(gltf_import &import, const gltf_primitive &primitive, uint32
             if (!(std::fabs(uv[axis]) <= GLTF_MAX_UV)) {
                 uv[axis] = 0;
                 unusable_found = true;
-                gltf_warn_once(import, "%s: %s values that are not finite or huge are taken as 0",
-                               primitive.location.c_str(), name);
+                import_warn_once(import, "%s: %s values that are not finite or huge are taken as 0",
+                                 primitive.location.c_str(), name);
             }
         }
         import.scene->rejects.vertices += unusable_found;
@@ -239,8 +239,8 @@ static void read_normals(gltf_import &import, const gltf_primitive &primitive,
     uint32_t repaired = triangle_mesh_repair_normals(&mesh);
     import.scene->rejects.vertices += repaired;
     if (repaired > 0) {
-        gltf_warn_once(import, "%s: %u normals that are zero or not finite are recomputed",
-                       primitive.location.c_str(), repaired);
+        import_warn_once(import, "%s: %u normals that are zero or not finite are recomputed",
+                         primitive.location.c_str(), repaired);
     }
 }
 
@@ -314,11 +314,11 @@ static void import_primitive(gltf_import &import, const tinygltf::Mesh &mesh_sou
                              gltf_primitive &primitive, uint32_t &mesh_id)
 {
     if (primitive.source.mode >= 0 && primitive.source.mode < GLTF_MODE_TRIANGLES) {
-        gltf_warn_once(import, "%s: points and lines are not drawn", primitive.location.c_str());
+        import_warn_once(import, "%s: points and lines are not drawn", primitive.location.c_str());
         return;
     }
     if (!get_attribute(import, primitive, "POSITION", 3, 3, primitive.positions)) {
-        gltf_warn_once(import, "%s: no POSITION, nothing to draw", primitive.location.c_str());
+        import_warn_once(import, "%s: no POSITION, nothing to draw", primitive.location.c_str());
         return;
     }
     std::vector<uint32_t> triangles;

@@ -189,11 +189,11 @@ static void set_from_matrix(gltf_import &import, const std::vector<double> &matr
         shear = std::max(shear, std::fabs(vector3_dot(columns[axis], columns[(axis + 1) % 3])));
     }
     if (shear > 1e-3) {
-        gltf_warn_once(import, "node matrices with shear are approximated without it");
+        import_warn_once(import, "node matrices with shear are approximated without it");
     }
     if (clamped) {
-        gltf_warn_once(import, "node scales beyond %g are taken as %g", GLTF_MAX_SCALE,
-                       GLTF_MAX_SCALE);
+        import_warn_once(import, "node scales beyond %g are taken as %g", GLTF_MAX_SCALE,
+                         GLTF_MAX_SCALE);
     }
     double cross[3];
     vector3_cross(cross, columns[0], columns[1]);
@@ -227,7 +227,7 @@ static void set_rotation(gltf_import &import, const std::vector<double> &rotatio
         square += largest > 0 ? value / largest * (value / largest) : 0;
     }
     if (!(largest > 0)) {
-        gltf_warn_once(import, "node rotations of length 0 are taken as none");
+        import_warn_once(import, "node rotations of length 0 are taken as none");
         return;
     }
     for (size_t i = 0; i < 4; i++) {
@@ -302,14 +302,14 @@ static void add_camera(gltf_import &import, int index, uint32_t node)
     if (source.type == "orthographic") {
         // The orthographic view's height, at a distance of 10 m.
         fov_y_rad = 2 * std::atan(std::fabs(source.orthographic.ymag) / 10);
-        gltf_warn_once(import, "orthographic cameras are shown in perspective");
+        import_warn_once(import, "orthographic cameras are shown in perspective");
     } else if (source.type != "perspective") {
         import_fail("cameras[%d].type '%s' is unknown; allowed are perspective and orthographic",
                     index, import_short_name(source.type, 40).c_str());
     }
     if (!(fov_y_rad > 0 && fov_y_rad < M_PI)) {
-        gltf_warn_once(import, "cameras[%d]: a field of view of %g rad is taken as %g", index,
-                       fov_y_rad, GLTF_DEFAULT_FOV_RAD);
+        import_warn_once(import, "cameras[%d]: a field of view of %g rad is taken as %g", index,
+                         fov_y_rad, GLTF_DEFAULT_FOV_RAD);
         fov_y_rad = GLTF_DEFAULT_FOV_RAD;
     }
     reserve_one(target->cameras, target->camera_count, target->camera_capacity, SCENE_MAX_CAMERAS,

@@ -551,8 +551,8 @@ void gltf_check_extensions(gltf_import &import)
     for (const json &name : root.value("extensionsUsed", none)) {
         const std::string extension = name;
         if (!is_supported(extension)) {
-            gltf_warn_once(import, "extension %s is ignored",
-                           import_short_name(extension, 80).c_str());
+            import_warn_once(import, "extension %s is ignored",
+                             import_short_name(extension, 80).c_str());
         }
     }
 }

@@ -1,9 +1,7 @@
 #include <array>
 #include <cmath>
-#include <cstdarg>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <new>
 #include <sstream>
 #include <unordered_map>
@@ -74,18 +72,6 @@ struct obj_document {
     std::unordered_map<uint64_t, obj_float3> smooth_normals; // by group << 32 | position
 };
 
-void obj_warn_once(obj_import &import, const char *format, ...)
-{
-    char text[ERROR_MESSAGE_SIZE];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof(text), format, arguments);
-    va_end(arguments);
-    if (import.warned.size() < SCENE_MAX_WARNINGS && import.warned[text]++ == 0) {
-        scene_add_warning(import.scene, "%s", text);
-    }
-}
-
 static void add_value(std::vector<obj_float3> &list, float x, float y, float z)
 {
     if (list.size() >= SCENE_MAX_VERTICES) {
@@ -122,7 +108,7 @@ static void on_face(void *user, tinyobj::index_t *indices, int count)
 {
     obj_document &document = *(obj_document *)user;
     if (count < 3) {
-        obj_warn_once(*document.import, "faces of fewer than 3 corners are dropped");
+        import_warn_once(*document.import, "faces of fewer than 3 corners are dropped");
         return;
     }
     document.triangle_corners += 3 * ((uint64_t)count - 2);
@@ -152,7 +138,7 @@ static void on_material(void *user, const char *name, int)
     if (found != document.import->material_ids.end()) {
         id = found->second;
     } else {
-        obj_warn_once(*document.import, "some materials are defined nowhere: shown in white");
+        import_warn_once(*document.import, "some materials are defined nowhere: shown in white");
     }
     document.material_faces = &document.faces[id];
 }
@@ -176,12 +162,12 @@ static void check_corners(obj_document &document)
         if (corner.uv != OBJ_NO_INDEX &&
             (corner.uv < 0 || corner.uv >= (int64_t)document.uvs.size())) {
             corner.uv = OBJ_NO_INDEX;
-            obj_warn_once(*document.import, "texture coordinates out of range are taken as 0");
+            import_warn_once(*document.import, "texture coordinates out of range are taken as 0");
         }
         if (corner.normal != OBJ_NO_INDEX &&
             (corner.normal < 0 || corner.normal >= (int64_t)document.normals.size())) {
             corner.normal = OBJ_NO_INDEX;
-            obj_warn_once(*document.import, "normals out of range are recomputed");
+            import_warn_once(*document.import, "normals out of range are recomputed");
         }
     }
 }
@@ -369,9 +355,10 @@ static void add_geometry(obj_document &document)
                 add_face(document, batch, face);
             } else {
                 target->rejects.triangles++;
-                obj_warn_once(*document.import,
-                              "faces with positions that are not finite or beyond %g m are dropped",
-                              (double)SCENE_MAX_COORDINATE_M);
+                import_warn_once(
+                    *document.import,
+                    "faces with positions that are not finite or beyond %g m are dropped",
+                    (double)SCENE_MAX_COORDINATE_M);
             }
         }
         if (batch.indices.empty()) {
@@ -392,10 +379,10 @@ static void add_geometry(obj_document &document)
     }
 }
 
-static void import_document(obj_import &import, const char *bytes, size_t size)
+static void import_document(obj_import &import, const uint8_t *bytes, size_t size)
 {
     std::vector<std::string> libraries;
-    std::istringstream text(obj_normalize_text(bytes, size, libraries));
+    std::istringstream text(obj_normalize_text((const char *)bytes, size, libraries));
     obj_import_materials(import, libraries);
     obj_document document;
     document.import = &import;
@@ -417,60 +404,21 @@ static void import_document(obj_import &import, const char *bytes, size_t size)
     scene_update_world_transforms(import.scene);
 }
 
-// Lets no exception escape.
-static struct scene *import_guarded(obj_import &import, const char *bytes, size_t size,
-                                    const char *label, struct error *out_error)
-{
-    std::string message = "out of memory";
-    try {
-        std::string name = label;
-        size_t slash = name.rfind('/');
-        name = name.substr(slash == std::string::npos ? 0 : slash + 1);
-        import.scene = scene_create(import_short_name(name, 64).c_str());
-        if (import.scene) {
-            import_document(import, bytes, size);
-            return import.scene;
-        }
-    } catch (const import_failure &failure) {
-        message = failure.what();
-    } catch (const std::exception &) {
-        message = "out of memory";
-    }
-    scene_destroy(&import.scene);
-    error_set(out_error, "OBJ '%.160s': %s", label, message.c_str());
-    return nullptr;
-}
-
 struct scene *scene_import_obj_memory(const void *bytes, size_t size, const char *base_folder,
                                       struct error *out_error)
 {
     obj_import import;
-    import.folder = base_folder ? base_folder : "";
-    return import_guarded(import, (const char *)bytes, size, "memory", out_error);
+    import_work work = [&import](const uint8_t *data, size_t count) {
+        import_document(import, data, count);
+    };
+    return import_from_memory(import, "OBJ", bytes, size, base_folder, work, out_error);
 }
 
 struct scene *scene_import_obj(const char *path, struct error *out_error)
 {
     obj_import import;
-    uint8_t *bytes = nullptr;
-    size_t size = 0;
-    std::unique_ptr<char, decltype(&free)> canonical(realpath(path, nullptr), free);
-    if (!canonical) {
-        error_set(out_error, "OBJ '%.200s': no such file, or not readable", path);
-        return nullptr;
-    }
-    std::unique_ptr<char, decltype(&free)> folder(asset_path_folder(canonical.get()), free);
-    if (!folder ||
-        !asset_read_file(canonical.get(), FILE_MAX_BYTES, &bytes, &size, nullptr, out_error)) {
-        return nullptr;
-    }
-    std::unique_ptr<uint8_t, decltype(&free)> owned(bytes, free);
-    import.folder = folder.get();
-    struct scene *scene =
-        import_guarded(import, (const char *)bytes, size, canonical.get(), out_error);
-    if (scene && !scene_add_source_file(scene, canonical.get())) {
-        scene_destroy(&scene);
-        error_set(out_error, "out of memory");
-    }
-    return scene;
+    import_work work = [&import](const uint8_t *data, size_t count) {
+        import_document(import, data, count);
+    };
+    return import_from_file(import, "OBJ", path, work, out_error);
 }

@@ -7,23 +7,11 @@
 #include <tiny_obj_loader.h>
 #include <vector>
 
-#include "renderer/import/import_failure.hpp"
+#include "renderer/import/import_job.hpp"
 
-extern "C" {
-#include "renderer/image/file_access.h"
-#include "renderer/scene/scene.h"
-}
-
-struct obj_import {
-    struct scene *scene = nullptr;
-    std::string folder;                           // canonical; empty to read no other files
+struct obj_import : import_job {
     std::map<std::string, uint32_t> material_ids; // the scene's, by name
-    std::map<std::string, uint32_t> warned;
 };
-
-// Adds a warning once per text.
-void obj_warn_once(obj_import &import, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
 
 // obj_text.cpp: converts OBJ and MTL text to what tinyobjloader reads correctly.
 

@@ -94,7 +94,7 @@ static void load_pictures(obj_import &import, const std::vector<tinyobj::materia
         }
         if (!path) {
             import.scene->missing_image_count++;
-            obj_warn_once(import, "a picture is left out: %s", error.message);
+            import_warn_once(import, "an image is left out: %s", error.message);
             continue;
         }
         paths.emplace_back(path, free);
@@ -109,8 +109,8 @@ static void load_pictures(obj_import &import, const std::vector<tinyobj::materia
         scene_add_source_file(import.scene, requests[i].key.path);
         if (!requests[i].image) {
             import.scene->missing_image_count++;
-            obj_warn_once(import, "a picture is left out: '%s': %s",
-                          import_short_name(names[i], 100).c_str(), requests[i].error.message);
+            import_warn_once(import, "an image is left out: '%s': %s",
+                             import_short_name(names[i], 100).c_str(), requests[i].error.message);
         }
     }
 }
@@ -272,8 +272,9 @@ static void read_libraries(obj_import &import, const std::vector<std::string> &l
                     found;
         }
         if (!found) {
-            obj_warn_once(import, "material library '%s' is missing or not in the scene's folder",
-                          import_short_name(line, 100).c_str());
+            import_warn_once(import,
+                             "material library '%s' is missing or not in the scene's folder",
+                             import_short_name(line, 100).c_str());
         }
     }
 }
