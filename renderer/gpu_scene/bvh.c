@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/hash.h"
 #include "renderer/scene/scene.h"
 
 #define MAX_LEAF_TRIANGLES 4u
@@ -79,18 +80,17 @@ static float opacity_of(const struct gpu_scene *gpu_scene,
 static uint64_t content_key(const struct gpu_scene *gpu_scene)
 {
     const struct scene_revisions *now = &gpu_scene->scene->revisions;
-    uint64_t key = 1469598103934665603ull;
-    key = (key ^ now->geometry) * 1099511628211ull;
-    key = (key ^ now->transforms) * 1099511628211ull;
+    uint64_t key = HASH_START;
+    key = hash_word(key, now->geometry);
+    key = hash_word(key, now->transforms);
     for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
         const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
         float opacity = opacity_of(gpu_scene, instance);
         uint32_t bits;
         memcpy(&bits, &opacity, sizeof(bits));
-        key = (key ^ bits) * 1099511628211ull;
-        key = (key ^
-               (blocks_light(instance) + 2u * emits_directly(instance) + 4u * instance->group)) *
-              1099511628211ull;
+        key = hash_word(key, bits);
+        key = hash_word(key, blocks_light(instance) + 2u * emits_directly(instance) +
+                                 4u * instance->group);
     }
     return key;
 }

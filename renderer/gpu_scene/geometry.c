@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/hash.h"
 #include "renderer/scene/placement.h"
 #include "renderer/scene/scene.h"
 
@@ -197,11 +198,11 @@ static void transform_instance(struct gpu_scene *gpu_scene, struct gpu_scene_ins
     }
 }
 
-// FNV-1a of what decides whether and how instances cast shadows, except their transforms.
+// Hash of what decides whether and how instances cast shadows, except their transforms.
 static uint64_t hash_casters(const struct gpu_scene *gpu_scene)
 {
     const struct scene *scene = gpu_scene->scene;
-    uint64_t hash = 1469598103934665603ull;
+    uint64_t hash = HASH_START;
     for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
         const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
         const struct scene_material *material =
@@ -213,7 +214,7 @@ static uint64_t hash_casters(const struct gpu_scene *gpu_scene)
         memcpy(&words[2], &cutoff, sizeof(cutoff));
         memcpy(&words[3], &alpha, sizeof(alpha));
         for (int j = 0; j < 4; j++)
-            hash = (hash ^ words[j]) * 1099511628211ull;
+            hash = hash_word(hash, words[j]);
     }
     return hash;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/hash.h"
+
 struct asset_entry {
     char *path;
     uint64_t path_hash;
@@ -22,16 +24,6 @@ static struct {
     struct asset_cache_statistics statistics;
 } cache = {.mutex = PTHREAD_MUTEX_INITIALIZER, .budget_bytes = ASSET_CACHE_DEFAULT_BUDGET_BYTES};
 
-// FNV-1a, 64 bits.
-static uint64_t hash_path(const char *path)
-{
-    uint64_t hash = 14695981039346656037ull;
-    for (; *path; path++) {
-        hash = (hash ^ (uint8_t)*path) * 1099511628211ull;
-    }
-    return hash;
-}
-
 static uint64_t image_bytes(const struct image *image)
 {
     return (uint64_t)image->width * image->height * 4;
@@ -39,7 +31,7 @@ static uint64_t image_bytes(const struct image *image)
 
 static struct asset_entry *find_entry(const struct asset_key *key)
 {
-    uint64_t hash = hash_path(key->path);
+    uint64_t hash = hash_bytes(HASH_START, key->path, strlen(key->path));
     for (uint32_t i = 0; i < cache.statistics.entries; i++) {
         struct asset_entry *entry = &cache.entries[i];
         if (entry->path_hash == hash && entry->index == key->index &&
@@ -116,7 +108,7 @@ void asset_cache_put(const struct asset_key *key, struct image *image)
     if (path) {
         cache.entries[cache.statistics.entries++] = (struct asset_entry){
             .path = path,
-            .path_hash = hash_path(path),
+            .path_hash = hash_bytes(HASH_START, path, strlen(path)),
             .stamp = key->stamp,
             .index = key->index,
             .last_use = ++cache.use_counter,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/hash.h"
 #include "renderer/scene/vector3.h"
 
 #define NO_VERTEX UINT32_MAX
@@ -78,9 +79,9 @@ static void weld_words(const struct tangent_work *work, uint32_t vertex, uint32_
 
 static uint64_t hash_words(const uint32_t words[8])
 {
-    uint64_t hash = 14695981039346656037ull;
+    uint64_t hash = HASH_START;
     for (int i = 0; i < 8; i++) {
-        hash = (hash ^ words[i]) * 1099511628211ull;
+        hash = hash_word(hash, words[i]);
     }
     return hash ^ hash >> 29;
 }

@@ -8,20 +8,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "renderer/hash.h"
 #include "server/accuracy/accuracy.h"
 
 #define MAX_OPEN_FILES 16
-
-// FNV-1a, 64 bits.
-#define HASH_START 14695981039346656037ull
-
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
-{
-    const uint8_t *at = bytes;
-    for (size_t i = 0; i < count; i++)
-        hash = (hash ^ at[i]) * 1099511628211ull;
-    return hash;
-}
 
 // A file's name, size and time of change.
 static uint64_t hash_file(uint64_t hash, const char *path, const struct stat *status)

@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "renderer/hash.h"
 #include "support_voxels.h"
 
 #define EDGE      64u
@@ -386,11 +387,7 @@ static void test_order_changes_nothing(void **state)
 
 static uint64_t digest(const struct voxel_records *records)
 {
-    uint64_t hash = 1469598103934665603ull;
-    const unsigned char *bytes = (const unsigned char *)records->records;
-    for (size_t i = 0; i < records->count * sizeof(*records->records); i++)
-        hash = (hash ^ bytes[i]) * 1099511628211ull;
-    return hash;
+    return hash_bytes(HASH_START, records->records, records->count * sizeof(*records->records));
 }
 
 static int print_digest(void)

@@ -12,7 +12,7 @@
 const PATHS = 'voxcast_paths.h';
 
 /** Plain data and small services below all folders of the renderer. */
-const BASE = ['renderer/error.h', 'renderer/log.h', 'renderer/clock.h'];
+const BASE = ['renderer/error.h', 'renderer/log.h', 'renderer/clock.h', 'renderer/hash.h'];
 const SETTINGS = ['renderer/settings.h', 'renderer/parameter_types.h'];
 
 /** What users of the renderer may include besides renderer.h: plain data and pure functions. */
