@@ -8,6 +8,7 @@
 #include <cjson/cJSON.h>
 
 #include "protocol/parameter_value.h"
+#include "protocol/parameters/enums.h"
 
 const char *const parameter_group_names[GROUP_COUNT] = {
     "light", "material", "node", "environment", "settings", "animation", "view", "camera",
@@ -17,29 +18,6 @@ const char *const parameter_type_names[PARAMETER_TYPE_COUNT] = {
     "float", "int", "bool", "enum", "string", "vec3", "color", "color_alpha", "quaternion",
 };
 
-// The constants that rows name. The renderer has them from the same lists.
-#define ENUM_BEGIN(name)           enum name {
-#define ENUM_VALUE(constant, text) constant,
-#define ENUM_END(name, count)                                                                      \
-    count                                                                                          \
-    }                                                                                              \
-    ;
-#include "protocol/parameters/enums.def"
-#undef ENUM_BEGIN
-#undef ENUM_VALUE
-#undef ENUM_END
-
-#define ENUM_BEGIN(name)           static const char *const name##_values[] = {
-#define ENUM_VALUE(constant, text) [constant] = text,
-#define ENUM_END(name, count)                                                                      \
-    [count] = NULL                                                                                 \
-    }                                                                                              \
-    ;
-#include "protocol/parameters/enums.def"
-#undef ENUM_BEGIN
-#undef ENUM_VALUE
-#undef ENUM_END
-
 // Two records of the table belong to one group.
 #define GROUP_LIGHT_PLACEMENT GROUP_LIGHT
 
@@ -47,7 +25,7 @@ const char *const parameter_type_names[PARAMETER_TYPE_COUNT] = {
 #define TYPE_FLOAT       .type = PARAMETER_FLOAT
 #define TYPE_INT         .type = PARAMETER_INT
 #define TYPE_BOOL        .type = PARAMETER_BOOL
-#define TYPE_ENUM(name)  .type = PARAMETER_ENUM, .values = name##_values
+#define TYPE_ENUM(name)  .type = PARAMETER_ENUM, .values = name##_names
 #define TYPE_STRING      .type = PARAMETER_STRING
 #define TYPE_VEC3        .type = PARAMETER_VEC3
 #define TYPE_COLOR       .type = PARAMETER_COLOR

@@ -1,30 +1,12 @@
-// The parameter table as C types: enums and their names, and macros that make structs and defaults
-// from its rows. Plain data.
+// The parameter table as C types: its enums, and macros that make structs and defaults from its
+// rows. Plain data.
 #ifndef VOXCAST_RENDERER_PARAMETER_TYPES_H
 #define VOXCAST_RENDERER_PARAMETER_TYPES_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define ENUM_BEGIN(name)           enum name {
-#define ENUM_VALUE(constant, text) constant,
-#define ENUM_END(name, count)                                                                      \
-    count                                                                                          \
-    }                                                                                              \
-    ;
-#include "protocol/parameters/enums.def"
-#undef ENUM_BEGIN
-#undef ENUM_VALUE
-#undef ENUM_END
-
-// Names as in the protocol and on the command line: gi_method_names[GI_METHOD_GRID] is "grid".
-#define ENUM_BEGIN(name)
-#define ENUM_VALUE(constant, text)
-#define ENUM_END(name, count) extern const char *const name##_names[count];
-#include "protocol/parameters/enums.def"
-#undef ENUM_BEGIN
-#undef ENUM_VALUE
-#undef ENUM_END
+#include "protocol/parameters/enums.h"
 
 // What a change of a parameter invalidates.
 enum invalidation {
