@@ -75,36 +75,11 @@ struct method_row {
 #define EDIT   (EDIT_ID | TRANSIENT)
 #define MERGES (METHOD_EDITS | METHOD_MERGES)
 
+#define METHOD(constant, ...) [METHOD_##constant] = {__VA_ARGS__},
 static const struct method_row methods[METHOD_COUNT] = {
-    [METHOD_SESSION_HELLO] = {"session.hello", 0, GROUP_COUNT,
-                              PROTOCOL | NAME | TOKEN | RESUME_EPOCH | RESUME_REVISION, 0},
-    [METHOD_SCENE_GET] = {"scene.get", 0, GROUP_COUNT, 0, 0},
-    [METHOD_SCENE_LIST] = {"scene.list", 0, GROUP_COUNT, 0, 0},
-    [METHOD_SCENE_LOAD] = {"scene.load", METHOD_EDITS, GROUP_COUNT, SOURCE, SOURCE},
-    [METHOD_TEXTURE_GET] = {"texture.get", 0, GROUP_COUNT, IMAGE, IMAGE},
-    [METHOD_CAMERA_SET] = {"camera.set", METHOD_MERGES, GROUP_CAMERA, REVISION | FLAT, 0},
-    [METHOD_VIEW_CONFIGURE] = {"view.configure", 0, GROUP_VIEW, FLAT, 0},
-    [METHOD_LIGHT_ADD] = {"light.add", METHOD_EDITS, GROUP_LIGHT, SET | EDIT_ID, 0},
-    [METHOD_LIGHT_UPDATE] = {"light.update", MERGES, GROUP_LIGHT, TARGET | SET | EDIT,
-                             TARGET | SET},
-    [METHOD_LIGHT_REMOVE] = {"light.remove", METHOD_EDITS, GROUP_COUNT, TARGET | EDIT_ID, TARGET},
-    [METHOD_MATERIAL_UPDATE] = {"material.update", MERGES, GROUP_MATERIAL, TARGET | SET | EDIT,
-                                TARGET | SET},
-    [METHOD_NODE_UPDATE] = {"node.update", MERGES, GROUP_NODE, TARGET | SET | EDIT, TARGET | SET},
-    [METHOD_ENVIRONMENT_UPDATE] = {"environment.update", MERGES, GROUP_ENVIRONMENT, SET | EDIT,
-                                   SET},
-    [METHOD_ENVIRONMENT_LOAD] = {"environment.load", METHOD_EDITS, GROUP_COUNT, FILE_NAME | EDIT_ID,
-                                 FILE_NAME},
-    [METHOD_SETTINGS_UPDATE] = {"settings.update", MERGES, GROUP_SETTINGS, SET | EDIT, SET},
-    [METHOD_ANIMATION_SET] = {"animation.set", MERGES, GROUP_ANIMATION, TARGET | SET | EDIT,
-                              TARGET | SET},
-    [METHOD_EDIT_UNDO] = {"edit.undo", METHOD_EDITS, GROUP_COUNT, EDIT_ID, 0},
-    [METHOD_EDIT_REDO] = {"edit.redo", METHOD_EDITS, GROUP_COUNT, EDIT_ID, 0},
-    [METHOD_PICK] = {"pick", 0, GROUP_COUNT, PIXEL_X | PIXEL_Y, PIXEL_X | PIXEL_Y},
-    [METHOD_FRAME_ACK] = {"frame.ack", 0, GROUP_COUNT, FRAME_ID, FRAME_ID},
-    [METHOD_ACCURACY_START] = {"accuracy.start", 0, GROUP_COUNT, SWEEP | NOISE | SECONDS, 0},
-    [METHOD_ACCURACY_CANCEL] = {"accuracy.cancel", 0, GROUP_COUNT, 0, 0},
+#include "protocol/methods.def"
 };
+#undef METHOD
 
 const char *method_name(enum method method)
 {

@@ -10,31 +10,12 @@
 #include "protocol/parameters.h"
 #include "protocol/rpc.h"
 
+#define METHOD(constant, ...) METHOD_##constant,
 enum method {
-    METHOD_SESSION_HELLO,
-    METHOD_SCENE_GET,
-    METHOD_SCENE_LIST,
-    METHOD_SCENE_LOAD,
-    METHOD_TEXTURE_GET,
-    METHOD_CAMERA_SET,
-    METHOD_VIEW_CONFIGURE,
-    METHOD_LIGHT_ADD,
-    METHOD_LIGHT_UPDATE,
-    METHOD_LIGHT_REMOVE,
-    METHOD_MATERIAL_UPDATE,
-    METHOD_NODE_UPDATE,
-    METHOD_ENVIRONMENT_UPDATE,
-    METHOD_ENVIRONMENT_LOAD,
-    METHOD_SETTINGS_UPDATE,
-    METHOD_ANIMATION_SET,
-    METHOD_EDIT_UNDO,
-    METHOD_EDIT_REDO,
-    METHOD_PICK,
-    METHOD_FRAME_ACK,
-    METHOD_ACCURACY_START,
-    METHOD_ACCURACY_CANCEL,
+#include "protocol/methods.def"
     METHOD_COUNT
 };
+#undef METHOD
 
 enum method_flags {
     METHOD_EDITS = 1,  // changes the shared document: not for viewers
