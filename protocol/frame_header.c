@@ -25,7 +25,8 @@ void frame_header_encode(const struct frame_header *header, uint8_t *out)
     memcpy(&noise_bits, &header->reference_noise, 4);
     memcpy(out, "VXF1", 4);
     uint8_t *at = put(out + 4, FRAME_HEADER_BYTES, 2);
-    at = put(at, header->flags, 2);
+    at = put(at, header->flags, 1);
+    at = put(at, header->codec, 1);
     at = put(at, header->view_id, 4);
     at = put(at, header->jpeg_bytes, 4);
     at = put(at, header->frame_id, 8);
@@ -50,14 +51,15 @@ void frame_header_encode(const struct frame_header *header, uint8_t *out)
 }
 
 bool frame_header_decode(const uint8_t *bytes, size_t length, struct frame_header *out_header,
-                         size_t *out_jpeg_offset)
+                         size_t *out_image_offset)
 {
     if (length < FRAME_HEADER_BYTES || memcmp(bytes, "VXF1", 4) != 0)
         return false;
     const uint8_t *at = bytes + 4;
     size_t header_bytes = get(&at, 2);
     struct frame_header header = {0};
-    header.flags = (uint16_t)get(&at, 2);
+    header.flags = (uint8_t)get(&at, 1);
+    header.codec = (uint8_t)get(&at, 1);
     header.view_id = (uint32_t)get(&at, 4);
     header.jpeg_bytes = (uint32_t)get(&at, 4);
     if (header_bytes < FRAME_HEADER_BYTES || length < header_bytes ||
@@ -85,6 +87,6 @@ bool frame_header_decode(const uint8_t *bytes, size_t length, struct frame_heade
     uint32_t noise_bits = (uint32_t)get(&at, 4);
     memcpy(&header.reference_noise, &noise_bits, 4);
     *out_header = header;
-    *out_jpeg_offset = header_bytes;
+    *out_image_offset = header_bytes;
     return true;
 }

@@ -1,4 +1,4 @@
-// The header before the JPEG in a binary message. PROTOCOL.md gives the offsets.
+// The header before the image in a binary message. PROTOCOL.md gives the offsets.
 #ifndef VOXCAST_PROTOCOL_FRAME_HEADER_H
 #define VOXCAST_PROTOCOL_FRAME_HEADER_H
 
@@ -13,7 +13,8 @@ enum frame_flags {
 };
 
 struct frame_header {
-    uint16_t flags;
+    uint8_t flags;
+    uint8_t codec; // enum frame_codec
     uint32_t view_id;
     uint32_t jpeg_bytes;
     uint64_t frame_id;
@@ -41,8 +42,8 @@ struct frame_header {
 void frame_header_encode(const struct frame_header *header, uint8_t *out);
 
 // False if `bytes` do not begin with a header, or if the header announces more bytes than there
-// are. `out_jpeg_offset` is where the JPEG begins.
+// are. `out_image_offset` is where the image begins.
 bool frame_header_decode(const uint8_t *bytes, size_t length, struct frame_header *out_header,
-                         size_t *out_jpeg_offset);
+                         size_t *out_image_offset);
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "protocol/limits.h"
 #include "server/stream/frame_stream.h"
-#include "server/stream/jpeg_workers.h"
+#include "server/stream/encode_workers.h"
 
 enum option_kind { OPTION_TEXT, OPTION_NUMBER, OPTION_LOG_LEVEL };
 
@@ -53,7 +53,7 @@ static const struct option_row rows[] = {
            "replies that may wait for one client; beyond, it is hung up on"),
     NUMBER("message-rate", message_rate, "240", 1, 100000, "messages a second of one client"),
     NUMBER("jpeg-quality", jpeg_quality, "85", 1, 100, "quality of the frames"),
-    NUMBER("jpeg-threads", jpeg_threads, "2", 1, JPEG_MAX_WORKERS, "threads that encode frames"),
+    NUMBER("jpeg-threads", jpeg_threads, "2", 1, ENCODE_MAX_WORKERS, "threads that encode frames"),
     {"log-level", OPTION_LOG_LEVEL, offsetof(struct options, log_level), "info", 0, 0, "LEVEL",
      "error, warn, info or debug"},
 };

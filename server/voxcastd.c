@@ -32,7 +32,7 @@ struct daemon {
     struct mailbox *mailbox;
     struct outbox *outbox;
     struct frame_stream *stream;
-    struct jpeg_workers *workers;
+    struct encode_workers *workers;
     struct accuracy_service *accuracy;
     struct render_thread *render;
     struct network *network;
@@ -126,12 +126,12 @@ static bool create_parts(struct daemon *daemon, struct error *error)
         error);
     if (!daemon->network)
         return false;
-    daemon->workers = jpeg_workers_create(&(struct jpeg_workers_params){
+    daemon->workers = encode_workers_create(&(struct encode_workers_params){
         .thread_count = options->jpeg_threads,
         .quality = (int)options->jpeg_quality,
         .stream = daemon->stream,
     });
-    return daemon->workers || error_set(error, "cannot start the JPEG threads");
+    return daemon->workers || error_set(error, "cannot start the threads that encode");
 }
 
 static bool start_threads(struct daemon *daemon, struct error *error)
@@ -205,7 +205,7 @@ static int stop(struct daemon *daemon, bool fine)
     if (daemon->outbox)
         outbox_close(daemon->outbox);
     render_thread_destroy(&daemon->render);
-    jpeg_workers_destroy(&daemon->workers);
+    encode_workers_destroy(&daemon->workers);
     network_destroy(&daemon->network);
     accuracy_service_destroy(&daemon->accuracy);
     outbox_destroy(&daemon->outbox);

@@ -188,7 +188,8 @@ export class App {
     this.editor.reset();
     this.timer.reset();
     this.newestStats = null;
-    this.picture.reset();
+    const codec = this.parameters('view').find((/** @type {any} */ row) => row.name === 'codec');
+    this.picture.reset(codec.values);
     this.measurement.forget(); // the server measures for a connection
     this.view.begin(hello);
     this.viewTab.rebuild();

@@ -144,8 +144,8 @@ bool render_draw_next(struct render_thread *thread);
 // The next time at which render_draw_next() may have work even if nothing comes in.
 uint64_t render_next_draw_us(struct render_thread *thread);
 
-// Hands finished frames to the JPEG workers. With `wait`, waits for one if any is under way. True
-// if there was one.
+// Hands finished frames to the workers that encode. With `wait`, waits for one if any is under way.
+// True if there was one.
 bool render_collect(struct render_thread *thread, bool wait);
 
 // The shared settings as views are drawn with them. What "auto" voxels are must not change with the

@@ -7,7 +7,7 @@
 
 #include "server/render/accuracy_service.h"
 #include "server/stream/frame_stream.h"
-#include "server/stream/jpeg_workers.h"
+#include "server/stream/encode_workers.h"
 #include "server/stream/mailbox.h"
 #include "server/stream/outbox.h"
 
@@ -23,7 +23,7 @@ struct render_thread_params {
     struct mailbox *mailbox;
     struct outbox *outbox;
     struct frame_stream *stream;
-    struct jpeg_workers *workers;
+    struct encode_workers *workers;
     struct accuracy_service *accuracy;
     // The thread calls it when it cannot go on: no renderer, or the first scene fails.
     void (*failed)(void *user);

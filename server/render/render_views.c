@@ -206,6 +206,7 @@ static void fill_header(struct render_thread *thread, struct render_client *clie
         .camera_revision = client->camera_revision,
         .quality = (uint8_t)client->drawn_row,
         .debug_view = (uint8_t)client->options.debug_view,
+        .codec = (uint8_t)client->options.codec,
         .epoch = (uint16_t)thread->epoch,
         .queue_us = client->dirty_since_us ? (uint32_t)(start_us - client->dirty_since_us) : 0,
         .draw_at_us = start_us,
@@ -391,7 +392,7 @@ static bool collect(struct render_thread *thread, uint32_t slot, bool wait)
     client->header.readback_us = (uint32_t)(now - client->drawn_at_us);
     take_convergence(client, &pixels);
     take_refine_time(thread, client, now);
-    jpeg_workers_submit(thread->params.workers, slot, &client->header, &pixels);
+    encode_workers_submit(thread->params.workers, slot, &client->header, &pixels);
     renderer_view_release(thread->renderer, client->view);
     client->drawing = false;
     count_frame(thread, client, now);

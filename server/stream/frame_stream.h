@@ -1,7 +1,7 @@
 // Where the three kinds of threads exchange frames: one slot for each client.
 //
 // The network loop opens and closes slots, takes encoded frames and reports acknowledgements. The
-// render thread asks which client may have another frame. The JPEG workers hand in frames. Each
+// render thread asks which client may have another frame. Workers that encode hand in frames. Each
 // call holds one mutex briefly; a slow client delays nobody.
 #ifndef VOXCAST_SERVER_STREAM_FRAME_STREAM_H
 #define VOXCAST_SERVER_STREAM_FRAME_STREAM_H
@@ -18,11 +18,11 @@
 
 struct frame_stream;
 
-// A message ready to be sent: FRAME_STREAM_PREFIX_BYTES unused bytes, the header, the JPEG.
+// A message ready to be sent: FRAME_STREAM_PREFIX_BYTES unused bytes, the header, the image.
 struct encoded_frame {
     struct frame_header header; // written into the message when the frame is sent
     uint64_t encoded_at_us;
-    size_t message_bytes; // header and JPEG
+    size_t message_bytes; // header and image
     uint8_t bytes[];
 };
 

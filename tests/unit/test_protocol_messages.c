@@ -230,6 +230,7 @@ static void frame_headers_keep_every_field(void **state)
     (void)state;
     struct frame_header header = {
         .flags = 1,
+        .codec = 7,
         .view_id = 2,
         .jpeg_bytes = 5,
         .frame_id = 1ull << 40,
@@ -256,7 +257,7 @@ static void frame_headers_keep_every_field(void **state)
     memset(bytes, 0xaa, sizeof(bytes));
     frame_header_encode(&header, bytes);
     // Offsets as PROTOCOL.md states them.
-    assert_memory_equal(bytes, "VXF1\x68\x00\x01\x00\x02\x00\x00\x00\x05\x00\x00\x00", 16);
+    assert_memory_equal(bytes, "VXF1\x68\x00\x01\x07\x02\x00\x00\x00\x05\x00\x00\x00", 16);
     assert_int_equal(bytes[16 + 5], 1);
     assert_int_equal(bytes[48] | bytes[49] << 8, 3840);
     assert_int_equal(bytes[52], 3);

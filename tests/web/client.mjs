@@ -66,7 +66,8 @@ export function decodeHeader(data) {
   return {
     magic: data.subarray(0, 4).toString('latin1'),
     headerSize: view.getUint16(4, true),
-    converged: (view.getUint16(6, true) & 1) !== 0,
+    converged: (view.getUint8(6) & 1) !== 0,
+    codec: view.getUint8(7),
     viewId: view.getUint32(8, true),
     jpegBytes: view.getUint32(12, true),
     frameId: u64(16),

@@ -13,7 +13,7 @@ const ERROR_NOT_PERMITTED = -32001;
  * with requests, and passes on notifications and frames.
  *
  * Events: `state`, `hello` (detail: the server's description), `notification` (detail: method and
- * params), `frame` (detail: header and jpeg).
+ * params), `frame` (detail: header and bytes of the image).
  */
 export class Connection extends EventTarget {
   /** @param {string} url @param {() => {name?: string, token?: string}} getIdentity */
@@ -94,8 +94,8 @@ export class Connection extends EventTarget {
     }
     const header = parseFrameHeader(data);
     if (!header) return;
-    const jpeg = data.slice(header.headerBytes, header.headerBytes + header.jpegBytes);
-    this.dispatchEvent(new CustomEvent('frame', { detail: { header, jpeg } }));
+    const bytes = data.slice(header.headerBytes, header.headerBytes + header.jpegBytes);
+    this.dispatchEvent(new CustomEvent('frame', { detail: { header, bytes } }));
   }
 
   #receiveText(/** @type {any} */ message) {

@@ -1,7 +1,8 @@
 /**
  * @typedef {object} FrameHeader
- * @property {number} headerBytes the JPEG begins here
+ * @property {number} headerBytes the image begins here
  * @property {boolean} converged
+ * @property {number} codec index in the enum `view.codec`
  * @property {number} viewId
  * @property {number} jpegBytes
  * @property {number} frameId
@@ -39,7 +40,8 @@ export function parseFrameHeader(message) {
   const u64 = (/** @type {number} */ at) => Number(view.getBigUint64(at, true));
   const header = {
     headerBytes: view.getUint16(4, true),
-    converged: (view.getUint16(6, true) & 1) !== 0,
+    converged: (view.getUint8(6) & 1) !== 0,
+    codec: view.getUint8(7),
     viewId: view.getUint32(8, true),
     jpegBytes: view.getUint32(12, true),
     frameId: u64(16),

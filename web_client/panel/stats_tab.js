@@ -9,7 +9,7 @@ const RATE_WINDOW_MS = 2000;
 
 const BOTTLENECKS = /** @type {Record<string, string>} */ ({
   render: 'Rendering on the server',
-  encode: 'Making JPEGs on the server',
+  encode: 'Compressing images on the server',
   network: 'The network',
   client: 'This browser',
   none: 'Nothing: the image is at rest',
@@ -55,7 +55,7 @@ export class StatsTab {
     );
     this.rateChart = new Chart(charts, { title: 'Frame rate', unit: 'fps', color: '#6fb1ff' });
     this.photonChart = new Chart(charts, { title: 'Edit to photon', unit: 'ms', color: '#ffc46b' });
-    this.sizeChart = new Chart(charts, { title: 'JPEG size', unit: 'KiB', color: '#7bd6a4' });
+    this.sizeChart = new Chart(charts, { title: 'Image size', unit: 'KiB', color: '#7bd6a4' });
     setInterval(() => this.#tick(), DRAW_MS);
     setInterval(() => this.#ping(), PING_MS);
   }

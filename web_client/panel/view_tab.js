@@ -23,6 +23,9 @@ const KEYS = [
  */
 const ELSEWHERE = ['width', 'height', 'rung'];
 
+/** Whether there is anything to choose: an enum of one value needs no control. */
+const hasChoice = (/** @type {any} */ { values }) => values === undefined || values.length > 1;
+
 /** How this client looks: image size, pause, its camera, and the keys. */
 export class ViewTab {
   /** @param {HTMLElement} root @param {import('./app_context.js').AppContext} app */
@@ -52,7 +55,8 @@ export class ViewTab {
     size.onChange((/** @type {string} */ choice) => view.chooseSize(choice));
     const rows = app
       .parameters('view')
-      .filter(({ name }) => !ELSEWHERE.includes(name) && !isRenderOption(name));
+      .filter((row) => !ELSEWHERE.includes(row.name) && !isRenderOption(row.name))
+      .filter(hasChoice);
     const options = addParameterControls(picture, rows, {
       get: (name) => view.options[name],
       set: (name, value) => view.configure({ [name]: value }),

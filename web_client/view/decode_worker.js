@@ -1,9 +1,9 @@
-// Decodes JPEGs off the main thread: receives {id, jpeg}, sends {id, bitmap}; bitmap is null if the
-// JPEG is broken. The receiver owns the bitmap.
+// Decodes images off the main thread: receives {id, bytes, type}, sends {id, bitmap}; bitmap is
+// null if the image is broken. The receiver owns the bitmap.
 self.onmessage = async (event) => {
-  const { id, jpeg } = event.data;
+  const { id, bytes, type } = event.data;
   try {
-    const bitmap = await createImageBitmap(new Blob([jpeg], { type: 'image/jpeg' }));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type }));
     self.postMessage({ id, bitmap }, { transfer: [bitmap] });
   } catch {
     self.postMessage({ id, bitmap: null });

@@ -1,5 +1,5 @@
 /** @typedef {import('../net/frame_header.js').FrameHeader} FrameHeader */
-/** @typedef {{header: FrameHeader, jpeg: ArrayBuffer}} Frame */
+/** @typedef {{header: FrameHeader, bytes: ArrayBuffer}} Frame */
 
 const MAX_DECODES = 2;
 
@@ -24,6 +24,8 @@ export class Picture extends EventTarget {
     this.waiting = null;
     this.newestShown = 0;
     this.nextDecode = 1;
+    /** Names of the enum `view.codec`. @type {string[]} */
+    this.codecs = [];
   }
 
   /** @param {Frame} frame */
@@ -34,11 +36,13 @@ export class Picture extends EventTarget {
     }
     const id = this.nextDecode++;
     this.decodes.set(id, { header: frame.header, arrivedAt: performance.now() });
-    this.worker.postMessage({ id, jpeg: frame.jpeg }, [frame.jpeg]);
+    const type = `image/${this.codecs[frame.header.codec]}`;
+    this.worker.postMessage({ id, bytes: frame.bytes, type }, [frame.bytes]);
   }
 
-  /** Frame numbers start over with each connection. */
-  reset() {
+  /** Frame numbers start over with each connection. @param {string[]} codecs of its server */
+  reset(codecs) {
+    this.codecs = codecs;
     this.decodes.clear();
     this.waiting = null;
     this.newestShown = 0;

@@ -1,13 +1,12 @@
-#include "server/stream/jpeg_workers.h"
+#include "server/stream/encode_workers.h"
 
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <turbojpeg.h>
-
 #include "renderer/clock.h"
+#include "server/stream/frame_encoder.h"
 
 // Credits bound the jobs: FRAME_STREAM_MAX_UNACKNOWLEDGED for each client.
 #define MAX_JOBS (FRAME_STREAM_MAX_CLIENTS * FRAME_STREAM_MAX_UNACKNOWLEDGED)
@@ -15,55 +14,36 @@
 struct job {
     uint32_t slot;
     struct frame_header header;
-    const uint8_t *planes[3]; // into bytes
-    int pitches[3];
+    struct frame_planes image; // in bytes
     uint8_t bytes[];
 };
 
-struct jpeg_workers {
-    struct jpeg_workers_params params;
+struct encode_workers {
+    struct encode_workers_params params;
     pthread_mutex_t mutex;
     pthread_cond_t changed;
     bool stop;
     uint32_t thread_count; // started
-    pthread_t threads[JPEG_MAX_WORKERS];
+    pthread_t threads[ENCODE_MAX_WORKERS];
     uint32_t first, count;
     struct job *jobs[MAX_JOBS];
 };
 
-// What a thread keeps between jobs.
-struct encoder {
-    tjhandle handle;
-    unsigned char *buffer;
-    unsigned long size;
-};
-
-static struct encoded_frame *encode(struct encoder *encoder, const struct job *job, int quality)
+// `memory` is what the thread keeps for the codec; made when first needed.
+static struct encoded_frame *encode(void **memory, const struct job *job, int quality)
 {
-    int width = job->header.width, height = job->header.height;
-    unsigned long needed = tjBufSize(width, height, TJSAMP_420);
-    if (needed > encoder->size) {
-        free(encoder->buffer);
-        encoder->buffer = malloc(needed);
-        encoder->size = encoder->buffer ? needed : 0;
-    }
-    if (!encoder->handle || !encoder->buffer)
-        return NULL;
+    const struct frame_encoder *encoder = frame_encoder_of(job->header.codec);
     uint64_t start = clock_now_us();
-    unsigned long bytes = encoder->size;
-    const unsigned char *planes[3] = {job->planes[0], job->planes[1], job->planes[2]};
-    if (tjCompressFromYUVPlanes(encoder->handle, planes, width, job->pitches, height, TJSAMP_420,
-                                &encoder->buffer, &bytes, quality,
-                                TJFLAG_NOREALLOC | TJFLAG_FASTDCT) != 0) {
-        log_write(LOG_ERROR, "jpeg_failed width=%d height=%d reason=\"%s\"", width, height,
-                  tjGetErrorStr2(encoder->handle));
-        return NULL;
-    }
+    if (!*memory)
+        *memory = encoder->create();
+    size_t bytes = 0;
+    const uint8_t *image = *memory ? encoder->encode(*memory, &job->image, quality, &bytes) : NULL;
     struct encoded_frame *frame =
-        malloc(sizeof(*frame) + FRAME_STREAM_PREFIX_BYTES + FRAME_HEADER_BYTES + bytes);
+        image ? malloc(sizeof(*frame) + FRAME_STREAM_PREFIX_BYTES + FRAME_HEADER_BYTES + bytes)
+              : NULL;
     if (!frame)
         return NULL;
-    memcpy(frame->bytes + FRAME_STREAM_PREFIX_BYTES + FRAME_HEADER_BYTES, encoder->buffer, bytes);
+    memcpy(frame->bytes + FRAME_STREAM_PREFIX_BYTES + FRAME_HEADER_BYTES, image, bytes);
     frame->message_bytes = FRAME_HEADER_BYTES + bytes;
     frame->encoded_at_us = clock_now_us();
     frame->header = job->header;
@@ -72,7 +52,7 @@ static struct encoded_frame *encode(struct encoder *encoder, const struct job *j
     return frame;
 }
 
-static struct job *take_job(struct jpeg_workers *workers)
+static struct job *take_job(struct encode_workers *workers)
 {
     struct job *job = NULL;
     pthread_mutex_lock(&workers->mutex);
@@ -89,22 +69,22 @@ static struct job *take_job(struct jpeg_workers *workers)
 
 static void *work(void *user)
 {
-    struct jpeg_workers *workers = user;
-    struct encoder encoder = {.handle = tjInitCompress()};
+    struct encode_workers *workers = user;
+    void *memories[FRAME_CODEC_COUNT] = {NULL};
     for (struct job *job = take_job(workers); job; job = take_job(workers)) {
         frame_stream_finish(workers->params.stream, job->slot,
-                            encode(&encoder, job, workers->params.quality));
+                            encode(&memories[job->header.codec], job, workers->params.quality));
         free(job);
     }
-    free(encoder.buffer);
-    if (encoder.handle)
-        tjDestroy(encoder.handle);
+    for (uint32_t i = 0; i < FRAME_CODEC_COUNT; i++)
+        if (memories[i])
+            frame_encoder_of(i)->destroy(memories[i]);
     return NULL;
 }
 
-struct jpeg_workers *jpeg_workers_create(const struct jpeg_workers_params *params)
+struct encode_workers *encode_workers_create(const struct encode_workers_params *params)
 {
-    struct jpeg_workers *workers = calloc(1, sizeof(*workers));
+    struct encode_workers *workers = calloc(1, sizeof(*workers));
     if (!workers)
         return NULL;
     workers->params = *params;
@@ -112,7 +92,7 @@ struct jpeg_workers *jpeg_workers_create(const struct jpeg_workers_params *param
     pthread_cond_init(&workers->changed, NULL);
     for (uint32_t i = 0; i < params->thread_count; i++) {
         if (pthread_create(&workers->threads[i], NULL, work, workers) != 0) {
-            jpeg_workers_destroy(&workers);
+            encode_workers_destroy(&workers);
             return NULL;
         }
         workers->thread_count++;
@@ -120,9 +100,9 @@ struct jpeg_workers *jpeg_workers_create(const struct jpeg_workers_params *param
     return workers;
 }
 
-void jpeg_workers_destroy(struct jpeg_workers **workers)
+void encode_workers_destroy(struct encode_workers **workers)
 {
-    struct jpeg_workers *w = *workers;
+    struct encode_workers *w = *workers;
     if (!w)
         return;
     pthread_mutex_lock(&w->mutex);
@@ -157,20 +137,22 @@ static struct job *create_job(uint32_t slot, const struct frame_header *header,
     job->header = *header;
     job->header.width = (uint16_t)pixels->width;
     job->header.height = (uint16_t)pixels->height;
+    job->image.width = job->header.width;
+    job->image.height = job->header.height;
     uint8_t *at = job->bytes;
     for (int i = 0; i < 3; i++) {
         // The last row may be shorter than the pitch.
         uint32_t row_bytes = i == 0 ? pixels->width : (pixels->width + 1) / 2;
         memcpy(at, pixels->planes[i], sizes[i] - pixels->row_pitch_bytes[i] + row_bytes);
-        job->planes[i] = at;
-        job->pitches[i] = (int)pixels->row_pitch_bytes[i];
+        job->image.planes[i] = at;
+        job->image.pitches[i] = (int)pixels->row_pitch_bytes[i];
         at += sizes[i];
     }
     return job;
 }
 
-void jpeg_workers_submit(struct jpeg_workers *workers, uint32_t slot,
-                         const struct frame_header *header, const struct frame_pixels *pixels)
+void encode_workers_submit(struct encode_workers *workers, uint32_t slot,
+                           const struct frame_header *header, const struct frame_pixels *pixels)
 {
     struct job *job = create_job(slot, header, pixels);
     pthread_mutex_lock(&workers->mutex);
