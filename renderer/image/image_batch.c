@@ -21,7 +21,7 @@ static bool reserve_bytes(struct image_batch *batch, uint32_t width, uint32_t he
     uint64_t bytes = (uint64_t)width * height * 4;
     if (atomic_fetch_add(&batch->bytes, bytes) + bytes > IMAGES_MAX_BYTES) {
         atomic_fetch_sub(&batch->bytes, bytes);
-        return error_set(out_error, "the scene's pictures exceed %llu MiB together",
+        return error_set(out_error, "the scene's images exceed %llu MiB together",
                          IMAGES_MAX_BYTES >> 20);
     }
     return true;

@@ -43,7 +43,7 @@ bool image_decode_size(const uint8_t *bytes, size_t size, uint32_t *out_width, u
 {
     int width = 0, height = 0, channels = 0;
     if (size > INT_MAX) {
-        return error_set(out_error, "a picture file of %zu bytes; the limit is %d", size, INT_MAX);
+        return error_set(out_error, "an image file of %zu bytes; the limit is %d", size, INT_MAX);
     }
     allocation_limit_bytes = 1 << 20; // a header needs little
     bool known = is_webp(bytes, size)
@@ -51,14 +51,14 @@ bool image_decode_size(const uint8_t *bytes, size_t size, uint32_t *out_width, u
                      : stbi_info_from_memory(bytes, (int)size, &width, &height, &channels);
     if (!known) {
         return error_set(out_error,
-                         "not a picture that can be read (PNG, JPEG, WebP, TGA or BMP), or it is "
+                         "not an image that can be read (PNG, JPEG, WebP, TGA or BMP), or it is "
                          "damaged or larger than %u pixels a side",
                          IMAGE_MAX_EDGE);
     }
     if (width < 1 || height < 1 || width > (int)IMAGE_MAX_EDGE || height > (int)IMAGE_MAX_EDGE ||
         (uint64_t)width * (uint64_t)height * 4 > IMAGE_MAX_BYTES) {
         return error_set(out_error,
-                         "a picture of %d x %d pixels; allowed are 1 to %u a side and %u MiB "
+                         "an image of %d x %d pixels; allowed are 1 to %u a side and %u MiB "
                          "when decoded",
                          width, height, IMAGE_MAX_EDGE, IMAGE_MAX_BYTES >> 20);
     }
@@ -101,8 +101,7 @@ struct image *image_decode(const uint8_t *bytes, size_t size, struct error *out_
     uint8_t *rgba = is_webp(bytes, size) ? decode_webp(bytes, size, width, height)
                                          : decode_stb(bytes, size, width, height);
     if (!rgba) {
-        error_set(out_error, "a damaged picture of %u x %u pixels, or out of memory", width,
-                  height);
+        error_set(out_error, "a damaged image of %u x %u pixels, or out of memory", width, height);
         return NULL;
     }
     struct image *image = image_create(width, height, rgba);

@@ -73,7 +73,7 @@ static scene_texture make_texture(gltf_import &import, int index, int uv_set,
     if (image >= 0) {
         texture.image = import.image_ids[(size_t)image];
     } else {
-        import_warn_once(import, "textures[%d] has no picture in a supported format", index);
+        import_warn_once(import, "textures[%d] has no image in a supported format", index);
     }
     if (source.sampler >= 0) {
         const tinygltf::Sampler &sampler = import.model.samplers[(size_t)source.sampler];

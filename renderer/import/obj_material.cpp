@@ -136,7 +136,7 @@ static void set_texture(obj_import &import, obj_pictures &pictures, scene_textur
         uint32_t id = scene_add_image(import.scene, image);
         image_release(&image);
         if (id == SCENE_NONE) {
-            import_fail("more than %u pictures, or out of memory", SCENE_MAX_IMAGES);
+            import_fail("more than %u images, or out of memory", SCENE_MAX_IMAGES);
         }
         found = pictures.ids.emplace(key, id).first;
     }

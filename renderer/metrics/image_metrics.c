@@ -34,7 +34,7 @@ static bool pixel_is_finite(const float rgb[3])
 static bool sizes_agree(const struct picture *a, const struct picture *b, struct error *out_error)
 {
     return (a->width == b->width && a->height == b->height) ||
-           error_set(out_error, "the pictures differ in size: %ux%u and %ux%u", a->width, a->height,
+           error_set(out_error, "the images differ in size: %ux%u and %ux%u", a->width, a->height,
                      b->width, b->height);
 }
 

@@ -117,7 +117,7 @@ static bool start(struct live_reference *live, struct live_scene *scene, struct 
     live->rgba = malloc((size_t)params->width * params->height * 4 * sizeof(float));
     if (!live->rgba) {
         reference_destroy(&live->reference);
-        return error_set(out_error, "out of memory for a picture of %u x %u", params->width,
+        return error_set(out_error, "out of memory for an image of %u x %u", params->width,
                          params->height);
     }
     reference_start(live->reference, WANTED_SAMPLES);

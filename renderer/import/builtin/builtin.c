@@ -12,9 +12,9 @@ static const struct builtin_scene {
     const char *description;
     bool (*build)(struct scene *scene);
 } builtin_scenes[] = {
-    {"cornell", "the Cornell box by its published measurements, lit by its lamp",
+    {"cornell", "the Cornell box by its published measurements, lit by its ceiling light",
      builtin_build_cornell},
-    {"cornell-objects", "metal, glass, gloss and roughness in the Cornell box",
+    {"cornell-objects", "metal, glass, lacquer and roughness in the Cornell box",
      builtin_build_cornell_objects},
     {"cornell-objects-diffuse", "the same objects, all matt",
      builtin_build_cornell_objects_diffuse},
