@@ -182,8 +182,8 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     if (!view_prepare(view, &frame->inputs, frame->plan))
         return error_set(out_error, "a view of %u x %u pixels does not fit into GPU memory",
                          frame->params->width, frame->params->height);
-    if (frame->plan->needs_bvh && !gpu_scene_need_tree(frame->gpu_scene))
-        return error_set(out_error, "a tree of the scene's triangles does not fit into memory");
+    if (frame->plan->needs_bvh && !gpu_scene_need_bvh(frame->gpu_scene))
+        return error_set(out_error, "a BVH of the scene's triangles does not fit into memory");
     struct frame_block block;
     frame_block_fill(frame, &block);
     shadow_map_relate_cascades(frame, &block);
@@ -416,7 +416,7 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
         {"vertices_mended", rejects->vertices},
         {"parameters_clamped", rejects->parameters},
         {"voxel_values_cut", volume ? volume->clamped : 0},
-        {"lamps_without_shadow", renderer->gpu_scene ? renderer->gpu_scene->counts.unshadowed : 0},
+        {"lights_without_shadow", renderer->gpu_scene ? renderer->gpu_scene->counts.unshadowed : 0},
     };
     statistics->reject_count = sizeof(found) / sizeof(found[0]);
     memcpy(statistics->rejects, found, sizeof(found));

@@ -95,7 +95,7 @@ static uint64_t content_key(const struct gpu_scene *gpu_scene)
     return key;
 }
 
-bool gpu_scene_need_tree(struct gpu_scene *gpu_scene)
+bool gpu_scene_need_bvh(struct gpu_scene *gpu_scene)
 {
     uint64_t key = content_key(gpu_scene);
     if (gpu_scene->bvh && gpu_scene->bvh->key == key)

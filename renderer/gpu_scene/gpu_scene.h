@@ -149,7 +149,7 @@ bool gpu_scene_upload_environment(struct gpu_scene *gpu_scene);
 void gpu_scene_count_materials(struct gpu_scene *gpu_scene);
 
 // Brings gpu_scene->bvh up to date with the geometry; cheap if it is. False when memory runs out.
-bool gpu_scene_need_tree(struct gpu_scene *gpu_scene);
+bool gpu_scene_need_bvh(struct gpu_scene *gpu_scene);
 
 // World position of the scene to one relative to gpu_scene->origin; may work in place.
 void gpu_scene_from_world(const struct gpu_scene *gpu_scene, const float world[3],

@@ -13,8 +13,8 @@
 #define GPU_BUDGET      131072u
 // Converged when the residual, estimated as a geometric series, is below this fraction of the
 // brightest voxel face.
-#define SETTLED_REST    0.008f
-#define MAX_GENERATIONS 48u
+#define CONVERGED_RESIDUAL 0.008f
+#define MAX_GENERATIONS    48u
 // Request pattern: over so many frames every pixel has requested faces once. The cache is complete
 // when all of them found nothing to trace.
 #define REQUEST_PATTERN 16u
@@ -95,7 +95,7 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         light->bounce = 0;
         light->filling = false;
         light->change = 0.0f;
-        light->rest = 1.0f;
+        light->residual = 1.0f;
         light->converged = false;
         light->start_pending = true;
         light->relight = true;
@@ -147,7 +147,6 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     if (generation != light->generation || light->start_pending || light->converged ||
         volume->faces_full)
         return;
-    light->left = report->left;
     light->unrequested_frames =
         report->left == 0 && report->traced == 0 ? light->unrequested_frames + 1 : 0;
     bool complete = light->all_faces_requested ? report->left == 0
@@ -166,13 +165,13 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     memcpy(&peak, &report->peak_bits, sizeof(peak));
     float ratio = light->change > 0.0f ? fminf(change / light->change, 0.95f) : 0.95f;
     light->change = change;
-    light->rest = change * ratio / (1.0f - ratio);
+    light->residual = change * ratio / (1.0f - ratio);
     light->peak = peak;
     light->bounce++;
-    light->converged =
-        light->bounce >= light->needed || (light->unlimited && light->rest < SETTLED_REST);
+    light->converged = light->bounce >= light->needed ||
+                       (light->unlimited && light->residual < CONVERGED_RESIDUAL);
     light->start_pending = !light->converged;
-    light->settled_once = light->settled_once || light->converged;
+    light->converged_once = light->converged_once || light->converged;
     light->version++;
     // Cones of gathering pixels must see the last bounce, too.
     light->relight = true;
@@ -185,7 +184,7 @@ float voxel_light_convergence(const struct voxel_volume *volume)
         return 1.0f;
     if (light->bounce == 0)
         return 0.0f;
-    float left = light->unlimited ? fminf(light->rest, 1.0f)
+    float left = light->unlimited ? fminf(light->residual, 1.0f)
                                   : 1.0f - (float)light->bounce / (float)light->needed;
     return 0.99f * (1.0f - left);
 }

@@ -373,7 +373,7 @@ static bool make_room_for_faces(struct voxel_volume *volume)
     if (volume->face_growth >= 2)
         return true;
     volume->face_growth++;
-    if (!volume->light.settled_once) {
+    if (!volume->light.converged_once) {
         volume->everything = true;
         free_pools(volume);
         return create_pools(volume);

@@ -46,7 +46,7 @@ struct voxel_light_state {
     bool relight;        // inject light into voxels again
     bool relight_direct; // direct light, too, not only the cache's bounce
     bool filling;        // converged except for voxels that a moving level has newly covered
-    bool settled_once;   // since the volume was created
+    bool converged_once; // since the volume was created
     bool start_pending;  // the next frame starts a cache generation
     bool converged;
     bool unlimited;              // number of bounces
@@ -55,11 +55,10 @@ struct voxel_light_state {
     uint32_t bounce;             // generations completed since the last change of light
     uint32_t needed;             // generations for the wanted bounces
     uint32_t unrequested_frames; // frames in a row with nothing to trace
-    uint32_t left;               // stale faces in the newest report
     uint32_t next_level;         // next to inject, where a frame does one level
     uint32_t version;            // counts changes of the radiance that cones see
     float change;                // in the last complete generation, relative to the brightest face
-    float rest;                  // residual: estimated relative change still to come
+    float residual;              // estimated relative change still to come
     float peak;                  // brightest face of that generation / scale
     double entry_ms;             // measured cost of tracing a face
 };

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "renderer/gi/voxel/volume.h"
+#include "renderer/hash.h"
 #include "renderer/scene/scene.h"
 
 // Up to this number of instances each has its own surfels. Beyond, instances of equal material
@@ -109,14 +110,6 @@ static bool add_regions(struct voxel_volume *volume, const struct gpu_scene *gpu
     return true;
 }
 
-static uint64_t hash_words(const uint32_t *words, size_t count)
-{
-    uint64_t hash = 1469598103934665603ull;
-    for (size_t i = 0; i < count; i++)
-        hash = (hash ^ words[i]) * 1099511628211ull;
-    return hash;
-}
-
 // Surface of each instance, then material and flags of each surface.
 static bool write_surfaces(struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
@@ -139,7 +132,7 @@ static bool write_surfaces(struct voxel_volume *volume, const struct gpu_scene *
         else if (!directly)
             table[instances + material] &= ~SURFACE_LIT_DIRECTLY;
     }
-    uint64_t hash = hash_words(table, words);
+    uint64_t hash = hash_bytes(HASH_START, table, words * sizeof(*table));
     bool done = true;
     if (!volume->surfaces || hash != volume->surfaces_hash) {
         done = gpu_buffer_ensure(volume->gpu, &volume->surfaces, "gi.surfaces", GPU_BUFFER_STATIC,

@@ -270,7 +270,7 @@ static void run_counted(struct stability_run *run)
         tell_count(run, &statistics, "triangles_left_out", 3);
         tell_count(run, &statistics, "vertices_mended", 36);
         tell_count(run, &statistics, "voxel_values_cut", 0);
-        tell_count(run, &statistics, "lamps_without_shadow", 0);
+        tell_count(run, &statistics, "lights_without_shadow", 0);
     }
     stability_view_close(&view);
     scene_destroy(&stage.scene);
