@@ -40,6 +40,7 @@ struct voxel_light_work {
     uint32_t relight_first; // levels first to end - 1
     uint32_t relight_end;
     bool trace;
+    bool smooth; // faces among their neighbours, once traced
 };
 
 // The method's volume, as the frame finds it.

@@ -2,8 +2,7 @@
 #include "renderer/gi/voxel/volume.h"
 #include "renderer/passes/pass.h"
 
-#define MOVING_SMOOTH_FRAMES 4u
-#define REQUEST_EDGE         4u // as in shaders/gi/cache_request.comp
+#define REQUEST_EDGE 4u // as in shaders/gi/cache_request.comp
 
 enum {
     PROGRAM_REQUEST,
@@ -34,8 +33,7 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
     gpu_barrier(gpu);
     gpu_dispatch_indirect(gpu, programs[PROGRAM_MARCH], volume->counters, COUNTER_MARCH * 4);
     gpu_barrier(gpu);
-    // Smoothing visits all faces, so while the camera moves it runs only every few frames.
-    if (!frame->plan->visibility_changed || volume->frame % MOVING_SMOOTH_FRAMES == 0)
+    if (frame->gi.work.smooth)
         gpu_dispatch_indirect(gpu, programs[PROGRAM_SMOOTH], volume->counters, COUNTER_LISTS * 4);
     return true;
 }

@@ -396,6 +396,14 @@ static void test_single_bounce(void **state)
     check("settings.bounces", "1", names);
 }
 
+// Where pixels gather the last bounce themselves, the cache must not hold it already.
+static void test_limited_bounces(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"gather_mode", "quality", NULL};
+    check("settings.bounces", "2", names);
+}
+
 // In a scene that has one Blinn-Phong material already, no effect bit shows that the others'
 // shading model changes.
 static void test_shading_in_reflections(void **state)
@@ -439,6 +447,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_parameter),
         cmocka_unit_test(test_single_bounce),
+        cmocka_unit_test(test_limited_bounces),
         cmocka_unit_test(test_shading_in_reflections),
         cmocka_unit_test(test_debug_views),
     };

@@ -18,6 +18,8 @@
 // Request pattern: over so many frames every pixel has requested faces once. The cache is complete
 // when all of them found nothing to trace.
 #define REQUEST_PATTERN 16u
+// Smoothing visits all faces, so while the camera moves it runs only every few frames.
+#define MOVING_SMOOTH_FRAMES 4u
 
 static void start_generation(struct voxel_volume *volume)
 {
@@ -124,6 +126,10 @@ void voxel_light_begin(struct voxel_volume *volume, const struct voxel_light_par
         start_generation(volume);
     plan_relight(volume, params, out_work);
     out_work->trace = !light->converged && !(light->relight && light->next_level != 0);
+    out_work->smooth = out_work->trace && (!params->camera_moved || light->smooth_due ||
+                                           volume->frame % MOVING_SMOOTH_FRAMES == 0);
+    light->unsmoothed = (light->unsmoothed || out_work->trace) && !out_work->smooth;
+    light->smooth_due = light->smooth_due && !out_work->smooth;
     // With limited bounces the first generation after an edit must not see the former light.
     bool feeds = params->multi_bounce && (light->bounce > 0 || light->unlimited);
     volume->uniforms.cache_generation = light->generation;
@@ -152,6 +158,9 @@ void voxel_light_collect(struct voxel_volume *volume, uint32_t generation,
     bool complete = light->all_faces_requested ? report->left == 0
                                                : light->unrequested_frames >= REQUEST_PATTERN;
     if (!complete)
+        return;
+    light->smooth_due = light->unsmoothed; // voxels take light from smoothed faces
+    if (light->smooth_due)
         return;
     if (light->filling) {
         light->filling = false;

@@ -18,6 +18,9 @@ struct voxel_volume_params {
     enum voxel_directions directions;
     uint32_t cache_cones; // per voxel face
     bool colors;          // surfels store colours besides their material
+    // Where the number of bounces is limited: the cache holds the last one, too. Else pixels gather
+    // it themselves, and would show one too many.
+    bool last_bounce;
 };
 
 // Number of levels of a clipmap with these parameters: the coarsest covers the scene, the finest
@@ -49,6 +52,8 @@ struct voxel_light_state {
     bool converged_once; // since the volume was created
     bool start_pending;  // the next frame starts a cache generation
     bool converged;
+    bool unsmoothed;             // faces have been traced since they were last smoothed
+    bool smooth_due;             // the generation is complete but for that
     bool unlimited;              // number of bounces
     bool all_faces_requested;    // trace all faces, not only requested ones
     uint32_t generation;         // 1 to 65535, then wraps to 1

@@ -72,6 +72,18 @@ static enum voxel_resolution automatic_resolution(const struct frame *frame,
     return deep ? VOXEL_RESOLUTION_64 : frame->plan->quality.voxel_resolution;
 }
 
+// Whether only transparent layers read the cache: with one bounce pixels gather it themselves, and
+// no pixel requests faces for the layers.
+static bool layers_alone_show_cache(const struct frame *frame)
+{
+    return frame->params->settings.bounces == 1 && frame_has(frame, EFFECT_TRANSPARENCY);
+}
+
+static bool shows_cache(const struct frame *frame)
+{
+    return frame_plan_shows_cache(&frame->inputs, frame->plan) || layers_alone_show_cache(frame);
+}
+
 static struct voxel_volume_params volume_params(const struct frame *frame)
 {
     const struct render_settings *settings = &frame->params->settings;
@@ -81,6 +93,7 @@ static struct voxel_volume_params volume_params(const struct frame *frame)
         .directions = settings->voxel_directions,
         .cache_cones = cone_set_count(frame->plan->cache_cone_set),
         .colors = frame_has(frame, EFFECT_VOXEL_COLORS),
+        .last_bounce = settings->bounces > 0 && shows_cache(frame),
     };
     enum voxel_resolution resolution = settings->voxel_resolution;
     if (resolution == VOXEL_RESOLUTION_AUTO)
@@ -95,7 +108,7 @@ static bool same_params(const struct voxel_volume_params *a, const struct voxel_
 {
     return a->method == b->method && a->edge == b->edge && a->clip_levels == b->clip_levels &&
            a->directions == b->directions && a->cache_cones == b->cache_cones &&
-           a->colors == b->colors;
+           a->colors == b->colors && a->last_bounce == b->last_bounce;
 }
 
 // First volume of the frame's kind (shared, or owned by one view) that the view may draw with. Else
@@ -236,13 +249,6 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     block->indirect_intensity = frame->params->settings.indirect_intensity;
 }
 
-// Whether only transparent layers read the cache: with one bounce pixels gather it themselves, and
-// no pixel requests faces for the layers.
-static bool layers_alone_show_cache(const struct frame *frame)
-{
-    return frame->params->settings.bounces == 1 && frame_has(frame, EFFECT_TRANSPARENCY);
-}
-
 // Whether the frame has no volume because other views use up all own volumes.
 static bool too_many_own(const struct gi *gi, const struct frame *frame)
 {
@@ -268,13 +274,12 @@ static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
     frame->volume = volume;
     fill_cones(frame, volume);
     volume->scale = radiance_scale(frame->gpu_scene, volume->scale);
-    bool shows_cache = frame_plan_shows_cache(&frame->inputs, frame->plan);
     struct voxel_light_params light = {
         .key = frame->plan->light_key,
         .bounces = settings->bounces,
         .multi_bounce = frame_has(frame, EFFECT_MULTI_BOUNCE),
         .all_faces = frame_has(frame, EFFECT_MULTI_BOUNCE) || layers_alone_show_cache(frame),
-        .cache_shown = shows_cache || layers_alone_show_cache(frame),
+        .cache_shown = shows_cache(frame),
         .camera_moved = frame->plan->surfaces_changed,
         .software = gpu_get_info(gi->gpu)->software,
         .levels_per_frame = settings->levels_per_frame,
