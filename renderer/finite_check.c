@@ -27,6 +27,7 @@ struct checked {
     const char *name;
     enum resource resource;
     const struct gpu_buffer *buffer; // NULL with `texture`
+    size_t first_word, word_count;   // of the buffer; 0: to its end
     struct resource_floats floats;
     const struct gpu_texture *texture;
     enum texture_kind kind;
@@ -72,15 +73,18 @@ static void add_texture(struct checked_list *list, const char *name, enum resour
     item->kind = kind;
 }
 
-// The last float of a vector block may be unsigned integers: a mask of its words.
-static void add_blocks(struct checked_list *list, const char *name, const struct gpu_buffer *buffer,
-                       uint32_t words, uint32_t floats)
+// Records of a table, with a mask of their words that are floats.
+static void add_table(struct checked_list *list, const char *name,
+                      const struct scene_tables *tables, enum scene_table table, uint32_t words,
+                      uint32_t floats)
 {
-    if (!buffer)
+    if (tables->size_bytes[table] == 0)
         return;
-    add_buffer(list, name, NOT_WRITTEN, buffer);
-    list->items[list->count - 1].floats =
-        (struct resource_floats){.record_words = words, .floats = floats};
+    struct checked *item = add(list, name, NOT_WRITTEN);
+    item->buffer = tables->buffer;
+    item->first_word = (size_t)tables->first[table] * 4;
+    item->word_count = tables->size_bytes[table] / sizeof(uint32_t);
+    item->floats = (struct resource_floats){.record_words = words, .floats = floats};
 }
 
 static void add_view(struct checked_list *list, const struct view *view)
@@ -108,7 +112,7 @@ static void add_volume(struct checked_list *list, const struct voxel_volume *vol
     uint32_t light = 3u << FACE_LIGHT | 3u << FACE_DIRECT | 3u << FACE_SHOWN;
     uint32_t hit_distances = ~((1u << FACE_WORDS) - 1); // of the cones
     faces->floats = (struct resource_floats){
-        .record_words = FACE_WORDS + volume->params.cache_cones,
+        .record_words = FACE_RECORD_WORDS(volume->params.cache_cones),
         .low_halves = light | hit_distances,
         .high_halves = light,
     };
@@ -117,11 +121,14 @@ static void add_volume(struct checked_list *list, const struct voxel_volume *vol
 static void add_scene(struct checked_list *list, const struct gpu_scene *gpu_scene)
 {
     // The last vector of lights and of instances is integers.
-    add_blocks(list, "lights", gpu_scene->lights, 20, 0xffff);
-    add_blocks(list, "instances", gpu_scene->instance_blocks, 20, 0xffff);
-    add_blocks(list, "materials", gpu_scene->materials, 32, 0x0fffffff);
-    add_blocks(list, "vertices", gpu_scene->vertices, VERTEX_WORDS, 0x1fe7);
-    add_buffer(list, "environment", NOT_WRITTEN, gpu_scene->environment);
+    const struct scene_tables *tables = &gpu_scene->tables;
+    add_table(list, "lights", tables, TABLE_LIGHTS, 20, 0xffff);
+    add_table(list, "instances", tables, TABLE_INSTANCES, 20, 0xffff);
+    add_table(list, "materials", tables, TABLE_MATERIALS, 32, 0x0fffffff);
+    add_table(list, "environment", tables, TABLE_ENVIRONMENT, 1, EVERY_WORD);
+    add_buffer(list, "vertices", NOT_WRITTEN, gpu_scene->vertices);
+    list->items[list->count - 1].floats =
+        (struct resource_floats){.record_words = VERTEX_WORDS, .floats = 0xf337};
     add_texture(list, "environment_levels", NOT_WRITTEN, gpu_scene->environment_levels,
                 TEXTURE_ARRAY);
 }
@@ -148,12 +155,18 @@ static bool dispatch(const struct finite_check *check, const struct checked *ite
         return false;
     uint32_t levels = item->texture ? gpu_texture_levels(item->texture) : 1;
     for (uint32_t level = 0; level < levels; level++) {
-        size_t count = item->texture ? gpu_texture_texel_count(item->texture, level)
-                                     : gpu_buffer_size_bytes(item->buffer) / sizeof(uint32_t);
+        size_t count = item->texture      ? gpu_texture_texel_count(item->texture, level)
+                       : item->word_count ? item->word_count
+                                          : gpu_buffer_size_bytes(item->buffer) / sizeof(uint32_t);
         size_t groups = (count + LINEAR_GROUP - 1) / LINEAR_GROUP;
-        const uint32_t head[8] = {
-            (uint32_t)count,         item->floats.record_words, result, level, item->floats.floats,
-            item->floats.low_halves, item->floats.high_halves};
+        const uint32_t head[8] = {(uint32_t)count,
+                                  item->floats.record_words,
+                                  result,
+                                  level,
+                                  item->floats.floats,
+                                  item->floats.low_halves,
+                                  item->floats.high_halves,
+                                  (uint32_t)item->first_word};
         gpu_buffer_write(block, 0, sizeof(head), head);
         gpu_bind_storage(check->gpu, BIND_CHECK, block);
         gpu_bind_storage(check->gpu, BIND_CHECKED, item->buffer);

@@ -78,6 +78,17 @@ static void fill_display(const struct frame *frame, struct frame_block *block)
     block->exposure_bias = exp2f(settings->exposure_ev);
 }
 
+void frame_block_fill_tables(const struct scene_tables *tables, struct frame_block *block)
+{
+    block->first_instance = tables->first[TABLE_INSTANCES];
+    block->first_id_block = tables->first[TABLE_ID_BLOCKS];
+    block->first_material = tables->first[TABLE_MATERIALS];
+    block->first_texture = tables->first[TABLE_TEXTURES];
+    block->first_light = tables->first[TABLE_LIGHTS];
+    block->first_area_light = tables->first[TABLE_AREA_LIGHTS];
+    block->environment_texel = tables->first[TABLE_ENVIRONMENT];
+}
+
 void frame_block_fill(const struct frame *frame, struct frame_block *block)
 {
     const struct gpu_scene *gpu_scene = frame->gpu_scene;
@@ -103,6 +114,7 @@ void frame_block_fill(const struct frame *frame, struct frame_block *block)
     block->environment_rotation_rad = environment->rotation_rad;
     block->texture_max_anisotropy = frame->plan->quality.texture_anisotropy;
     block->texture_dither_levels = gpu_get_info(frame->gpu)->software ? 1.0f : 0.0f;
+    frame_block_fill_tables(&gpu_scene->tables, block);
     if (gpu_scene->bvh)
         memcpy(block->bvh_origin, gpu_scene->bvh->center, sizeof(vec3));
     block->ray_min_offset_m = gpu_scene->diagonal_m * NEAR_FRACTION;

@@ -8,7 +8,7 @@
 
 #define FLOATS(...) ((struct resource_floats){__VA_ARGS__})
 #define RESOURCE_ROW(...)
-#define VIEW_BUFFER(id, name, history, slot, size, check)                                          \
+#define VIEW_BUFFER(id, name, history, slot, unit, texel, size, check)                             \
     static size_t name##_bytes(const struct frame_inputs *in, const struct frame_plan *plan)       \
     {                                                                                              \
         size_t pixels = (size_t)plan->width * plan->height;                                        \
@@ -28,11 +28,18 @@
 
 const struct resource_row resource_rows[RESOURCE_COUNT] = {
 #define RESOURCE_ROW(id, name, scope, history, storage, units, images)                             \
-    [RESOURCE_##id] = {#name, SCOPE_##scope, history, storage, units, images, NULL, NULL, NULL},
-#define VIEW_BUFFER(id, name, history, slot, size, check)                                          \
-    [RESOURCE_##                                                                                   \
-        id] = {#name,        SCOPE_VIEW,   history, BIT(slot), 0, 0, "view_targets." #name,        \
-               name##_bytes, name##_floats},
+    [RESOURCE_##id] = {#name, SCOPE_##scope, history, storage, units, images, NULL, 0, NULL, NULL},
+#define VIEW_BUFFER(id, name, history, slot, unit, texel, size, check)                             \
+    [RESOURCE_##id] = {#name,                                                                      \
+                       SCOPE_VIEW,                                                                 \
+                       history,                                                                    \
+                       1u << (slot),                                                               \
+                       unit,                                                                       \
+                       0,                                                                          \
+                       "view_targets." #name,                                                      \
+                       GPU_TEXEL_##texel,                                                          \
+                       name##_bytes,                                                               \
+                       name##_floats},
 #include "renderer/frame/frame.def"
 #undef RESOURCE_ROW
 #undef VIEW_BUFFER

@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "renderer/gpu/gpu.h"
+
 enum resource {
 #define RESOURCE_ROW(id, ...) RESOURCE_##id,
 #define VIEW_BUFFER(id, ...)  RESOURCE_##id,
@@ -39,11 +41,12 @@ struct resource_row {
     enum resource_scope scope;
     bool history;     // what earlier frames wrote is read
     uint32_t storage; // bits of the storage bindings
-    uint32_t units;   // bits of the texture units
+    uint64_t units;   // bits of the texture units
     uint32_t images;  // bits of the image units
 
     // Of a storage buffer of the view; NULL for all else.
-    const char *label; // of the GL object
+    const char *label;    // of the GL object
+    enum gpu_texel texel; // as shaders read it, where there is a texture unit for it
     size_t (*bytes)(const struct frame_inputs *in, const struct frame_plan *plan); // 0: not needed
     struct resource_floats (*floats)(const struct frame_inputs *in);
 };

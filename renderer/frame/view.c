@@ -146,7 +146,7 @@ void view_bind(const struct view *view)
 {
     struct gpu *gpu = view->gpu;
     gpu_bind_uniforms(gpu, BIND_FRAME, view->frame_block);
-    gpu_bind_storage(gpu, BIND_SHADOW_VIEWS, view->shadow_views);
+    gpu_bind_texels(gpu, UNIT_SHADOW_VIEWS, view->shadow_views, GPU_TEXEL_UINT4);
     gpu_bind_texture(gpu, UNIT_IDS, view->ids);
     gpu_bind_texture(gpu, UNIT_DEPTH, view->depth);
 }

@@ -10,6 +10,7 @@ struct gpu_buffer {
     GLuint name;
     size_t size_bytes;
     const void *mapping;
+    GLuint textures[GPU_TEXEL_COUNT]; // the buffer as texels; 0 until needed
 };
 
 struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gpu_buffer_kind kind,
@@ -53,6 +54,7 @@ void gpu_buffer_destroy(struct gpu_buffer **buffer_slot)
     *buffer_slot = NULL;
     if (!buffer)
         return;
+    glDeleteTextures(GPU_TEXEL_COUNT, buffer->textures);
     glDeleteBuffers(1, &buffer->name);
     gpu_unaccount(&buffer->allocation);
     free(buffer);
@@ -110,6 +112,20 @@ bool gpu_buffer_ensure(struct gpu *gpu, struct gpu_buffer **buffer, const char *
     gpu_buffer_destroy(buffer);
     *buffer = gpu_buffer_create(gpu, label, kind, size_bytes, NULL);
     return *buffer != NULL;
+}
+
+uint32_t gpu_buffer_texture_name(struct gpu_buffer *buffer, enum gpu_texel texel)
+{
+    static const GLenum formats[GPU_TEXEL_COUNT] = {[GPU_TEXEL_UINT] = GL_R32UI,
+                                                    [GPU_TEXEL_UINT3] = GL_RGB32UI,
+                                                    [GPU_TEXEL_UINT4] = GL_RGBA32UI,
+                                                    [GPU_TEXEL_FLOAT4] = GL_RGBA32F};
+    GLuint *texture = &buffer->textures[texel];
+    if (*texture == 0) {
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, texture);
+        glTextureBuffer(*texture, formats[texel], buffer->name);
+    }
+    return *texture;
 }
 
 uint32_t gpu_buffer_name(const struct gpu_buffer *buffer)

@@ -41,4 +41,7 @@ bool gpu_buffer_ensure(struct gpu *gpu, struct gpu_buffer **buffer, const char *
 
 uint32_t gpu_buffer_name(const struct gpu_buffer *buffer);
 
+// The buffer as a buffer texture; made at the first call, and destroyed with the buffer.
+uint32_t gpu_buffer_texture_name(struct gpu_buffer *buffer, enum gpu_texel texel);
+
 #endif

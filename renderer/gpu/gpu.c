@@ -225,6 +225,14 @@ void gpu_bind_storage(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *b
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot, buffer ? gpu_buffer_name(buffer) : 0);
 }
 
+void gpu_bind_texels(struct gpu *gpu, uint32_t unit, const struct gpu_buffer *buffer,
+                     enum gpu_texel texel)
+{
+    (void)gpu;
+    struct gpu_buffer *own = (struct gpu_buffer *)buffer; // all of them are this folder's
+    glBindTextureUnit(unit, own ? gpu_buffer_texture_name(own, texel) : 0);
+}
+
 void gpu_bind_uniforms(struct gpu *gpu, uint32_t slot, const struct gpu_buffer *buffer)
 {
     (void)gpu;

@@ -110,8 +110,10 @@ static void find_units(GLuint name, struct gpu_program_bindings *bindings)
         for (GLint j = 0; values[1] >= 0 && j < values[2]; j++) {
             GLint unit = -1;
             glGetUniformiv(name, values[1] + j, &unit);
-            if (unit >= 0 && unit < 32)
-                *(image ? &bindings->images : &bindings->units) |= 1u << unit;
+            if (image && unit >= 0 && unit < 32)
+                bindings->images |= 1u << unit;
+            else if (!image && unit >= 0 && unit < 64)
+                bindings->units |= (uint64_t)1 << unit;
         }
     }
 }

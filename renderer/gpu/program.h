@@ -23,7 +23,7 @@ void gpu_programs_watch(struct gpu *gpu);
 // not count.
 struct gpu_program_bindings {
     uint32_t storage; // bits of the bindings of storage blocks
-    uint32_t units;   // bits of the texture units
+    uint64_t units;   // bits of the texture units
     uint32_t images;  // bits of the image units
 };
 

@@ -317,29 +317,10 @@ static bool build(struct bvh_work *work)
     return done;
 }
 
-// Uploads rows of texels. The last row may be partial: `texels` has no padding.
-static struct gpu_texture *upload(struct gpu *gpu, const char *label, const void *texels,
-                                  size_t count)
+static struct gpu_buffer *upload(struct gpu *gpu, const void *texels, size_t count)
 {
-    size_t width = (size_t)1 << BVH_ROW_BITS;
-    size_t height = (count + width - 1) / width;
-    height = height ? height : 1;
-    if (height > gpu_get_info(gpu)->max_texture_edge)
-        return NULL;
-    uint32_t(*rows)[4] = calloc(width * height, sizeof(*rows));
-    if (!rows)
-        return NULL;
-    memcpy(rows, texels, count * sizeof(*rows));
-    struct gpu_texture_params params = {.label = label,
-                                        .format = GPU_FORMAT_RGBA32UI,
-                                        .width = (uint32_t)width,
-                                        .height = (uint32_t)height,
-                                        .filter = GPU_FILTER_NEAREST};
-    struct gpu_texture *texture = gpu_texture_create(gpu, &params);
-    if (texture)
-        gpu_texture_write(texture, 0, 0, rows);
-    free(rows);
-    return texture;
+    return gpu_buffer_create(gpu, "geometry.bvh", GPU_BUFFER_STATIC, count * 4 * sizeof(uint32_t),
+                             texels);
 }
 
 struct bvh *bvh_create(const struct gpu_scene *gpu_scene)
@@ -349,10 +330,9 @@ struct bvh *bvh_create(const struct gpu_scene *gpu_scene)
     if (bvh && collect_triangles(&work) && build(&work)) {
         memcpy(bvh->center, work.center, sizeof(bvh->center));
         bvh->triangle_count = work.sorted_count;
-        bvh->nodes = upload(gpu_scene->gpu, "geometry.tree", work.nodes,
-                            (size_t)work.node_count * BVH_NODE_TEXELS);
-        bvh->triangles = upload(gpu_scene->gpu, "geometry.tree", work.sorted,
-                                (size_t)work.sorted_count * BVH_TRIANGLE_TEXELS);
+        bvh->nodes = upload(gpu_scene->gpu, work.nodes, (size_t)work.node_count * BVH_NODE_TEXELS);
+        bvh->triangles =
+            upload(gpu_scene->gpu, work.sorted, (size_t)work.sorted_count * BVH_TRIANGLE_TEXELS);
     }
     free(work.triangles);
     free(work.sorted);
@@ -369,7 +349,7 @@ void bvh_destroy(struct bvh **bvh_slot)
     *bvh_slot = NULL;
     if (!bvh)
         return;
-    gpu_texture_destroy(&bvh->nodes);
-    gpu_texture_destroy(&bvh->triangles);
+    gpu_buffer_destroy(&bvh->nodes);
+    gpu_buffer_destroy(&bvh->triangles);
     free(bvh);
 }

@@ -1,14 +1,14 @@
-// BVH over a scene's triangles in GPU textures.
+// BVH over a scene's triangles in GPU buffers.
 #ifndef VOXCAST_RENDERER_GPU_SCENE_BVH_H
 #define VOXCAST_RENDERER_GPU_SCENE_BVH_H
 
-#include "renderer/gpu/texture.h"
+#include "renderer/gpu/buffer.h"
 
 struct gpu_scene;
 
 struct bvh {
-    struct gpu_texture *nodes;     // layouts: BVH_ in shaders/shared/bvh.h
-    struct gpu_texture *triangles; // world, relative to `center`
+    struct gpu_buffer *nodes;     // layouts: BVH_ in shaders/shared/bvh.h
+    struct gpu_buffer *triangles; // world, relative to `center`
     float center[3];
     uint32_t triangle_count;
     uint64_t key; // hash of what it was built from

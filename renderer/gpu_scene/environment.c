@@ -304,10 +304,8 @@ bool gpu_scene_upload_environment(struct gpu_scene *gpu_scene)
         block.horizon[c] = gradient ? environment->horizon_color[c] : environment->color[c];
         block.ground[c] = gradient ? environment->ground_color[c] : environment->color[c];
     }
-    if (!gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->environment, "environment",
-                           GPU_BUFFER_STATIC, sizeof(block)))
+    if (!scene_tables_write(&gpu_scene->tables, TABLE_ENVIRONMENT, &block, sizeof(block)))
         return false;
-    gpu_buffer_write(gpu_scene->environment, 0, sizeof(block), &block);
     // Intensity and rotation are uniforms: the images need not be made again for them.
     if (gpu_scene->environment_levels && same_pictures(gpu_scene))
         return true;

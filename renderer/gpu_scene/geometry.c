@@ -38,11 +38,13 @@ static uint32_t *pack_vertices(const struct scene *scene)
     for (uint32_t i = 0; words && i < scene->vertex_count; i++) {
         const struct scene_vertex *vertex = &scene->vertices[i];
         uint32_t *target = words + (size_t)i * VERTEX_WORDS;
+        memset(target, 0, VERTEX_WORDS * sizeof(*target));
         memcpy(target, vertex->position, sizeof(vertex->position));
         target[VERTEX_NORMAL] = pack_direction(vertex->normal);
         target[VERTEX_TANGENT] = (pack_direction(vertex->tangent) & ~0x10000u) |
                                  (vertex->tangent[3] < 0.0f ? 0x10000u : 0u);
-        memcpy(target + VERTEX_UV, vertex->uv, sizeof(vertex->uv));
+        memcpy(target + VERTEX_UV, vertex->uv[0], sizeof(vertex->uv[0]));
+        memcpy(target + VERTEX_SECOND_UV, vertex->uv[1], sizeof(vertex->uv[1]));
         memcpy(target + VERTEX_COLOR, vertex->color, sizeof(vertex->color));
     }
     return words;
@@ -86,8 +88,8 @@ static bool upload_id_blocks(struct gpu_scene *gpu_scene)
             owners[at++] = i;
     }
     gpu_scene->cluster_count = at;
-    bool done = upload(gpu_scene, &gpu_scene->id_blocks, "geometry.id_blocks",
-                       block_count * sizeof(*owners), owners);
+    bool done = scene_tables_write(&gpu_scene->tables, TABLE_ID_BLOCKS, owners,
+                                   block_count * sizeof(*owners));
     free(owners);
     return done;
 }
@@ -171,7 +173,7 @@ static void transform_instance(struct gpu_scene *gpu_scene, struct gpu_scene_ins
     memcpy(instance->world_from_local, node->world_from_local, sizeof(node->world_from_local));
     gpu_scene_from_world(gpu_scene, node->world_from_local + 12, instance->world_from_local + 12);
     fill_instance_block(block, instance->world_from_local);
-    block->first_index = instance->index_first;
+    block->first_triangle = instance->index_first / 3;
     block->material = primitive->material;
     block->first_visibility_id = instance->first_id;
     instance->visible = node->world_visible && instance->index_count > 0;
@@ -239,10 +241,8 @@ bool gpu_scene_upload_instances(struct gpu_scene *gpu_scene)
     gpu_scene->caster_hash = caster_hash;
     float diagonal = glm_vec3_distance(gpu_scene->bounds_min, gpu_scene->bounds_max);
     gpu_scene->diagonal_m = isfinite(diagonal) && diagonal > 0.0f ? diagonal : 1.0f;
-    bool done = gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->instance_blocks, "geometry.instances",
-                                  GPU_BUFFER_STATIC, count * sizeof(*blocks));
-    if (done)
-        gpu_buffer_write(gpu_scene->instance_blocks, 0, count * sizeof(*blocks), blocks);
+    bool done =
+        scene_tables_write(&gpu_scene->tables, TABLE_INSTANCES, blocks, count * sizeof(*blocks));
     free(blocks);
     return done;
 }

@@ -38,6 +38,7 @@ struct gpu_scene *gpu_scene_create(struct gpu *gpu, const struct scene *scene,
         return NULL;
     }
     gpu_scene->gpu = gpu;
+    gpu_scene->tables.gpu = gpu;
     gpu_scene->scene = scene;
     choose_origin(gpu_scene);
     if (!gpu_scene_upload_geometry(gpu_scene) || !gpu_scene_upload_textures(gpu_scene) ||
@@ -63,13 +64,7 @@ void gpu_scene_destroy(struct gpu_scene **gpu_scene_slot)
     gpu_buffer_destroy(&gpu_scene->indices);
     gpu_buffer_destroy(&gpu_scene->raster_vertices);
     gpu_buffer_destroy(&gpu_scene->raster_indices);
-    gpu_buffer_destroy(&gpu_scene->instance_blocks);
-    gpu_buffer_destroy(&gpu_scene->id_blocks);
-    gpu_buffer_destroy(&gpu_scene->materials);
-    gpu_buffer_destroy(&gpu_scene->texture_blocks);
-    gpu_buffer_destroy(&gpu_scene->lights);
-    gpu_buffer_destroy(&gpu_scene->area_lights);
-    gpu_buffer_destroy(&gpu_scene->environment);
+    scene_tables_finish(&gpu_scene->tables);
     for (int space = 0; space < 2; space++) {
         for (uint32_t i = 0; i < MAX_CLASSES_PER_SPACE; i++)
             gpu_texture_destroy(&gpu_scene->texture_spaces[space].classes[i]);
@@ -189,21 +184,15 @@ struct scene_facts gpu_scene_get_facts(const struct gpu_scene *gpu_scene)
 void gpu_scene_bind(const struct gpu_scene *gpu_scene)
 {
     struct gpu *gpu = gpu_scene->gpu;
-    gpu_bind_storage(gpu, BIND_INSTANCES, gpu_scene->instance_blocks);
-    gpu_bind_storage(gpu, BIND_ID_BLOCKS, gpu_scene->id_blocks);
-    gpu_bind_storage(gpu, BIND_VERTICES, gpu_scene->vertices);
-    gpu_bind_storage(gpu, BIND_INDICES, gpu_scene->indices);
-    gpu_bind_storage(gpu, BIND_MATERIALS, gpu_scene->materials);
-    gpu_bind_storage(gpu, BIND_TEXTURES, gpu_scene->texture_blocks);
-    gpu_bind_storage(gpu, BIND_LIGHTS, gpu_scene->lights);
-    gpu_bind_storage(gpu, BIND_AREA_LIGHTS, gpu_scene->area_lights);
-    gpu_bind_storage(gpu, BIND_ENVIRONMENT, gpu_scene->environment);
+    gpu_bind_texels(gpu, UNIT_SCENE_TABLES, gpu_scene->tables.buffer, GPU_TEXEL_UINT4);
+    gpu_bind_texels(gpu, UNIT_VERTICES, gpu_scene->vertices, GPU_TEXEL_UINT4);
+    gpu_bind_texels(gpu, UNIT_TRIANGLES, gpu_scene->indices, GPU_TEXEL_UINT3);
     gpu_bind_texture(gpu, UNIT_SHADOW_MAP, shadow_map_texture(gpu_scene->shadow_map));
     gpu_bind_texture(gpu, UNIT_ENVIRONMENT, gpu_scene->environment_levels);
     gpu_bind_texture(gpu, UNIT_BACKGROUND, gpu_scene->environment_background);
     if (gpu_scene->bvh) {
-        gpu_bind_texture(gpu, UNIT_BVH_NODES, gpu_scene->bvh->nodes);
-        gpu_bind_texture(gpu, UNIT_BVH_TRIANGLES, gpu_scene->bvh->triangles);
+        gpu_bind_texels(gpu, UNIT_BVH_NODES, gpu_scene->bvh->nodes, GPU_TEXEL_UINT4);
+        gpu_bind_texels(gpu, UNIT_BVH_TRIANGLES, gpu_scene->bvh->triangles, GPU_TEXEL_UINT4);
     }
     static const uint32_t units[2] = {UNIT_COLOR_CLASSES, UNIT_DATA_CLASSES};
     for (int space = 0; space < 2; space++)

@@ -7,6 +7,7 @@
 #include "renderer/gpu/gpu.h"
 #include "renderer/gpu/texture.h"
 #include "renderer/gpu_scene/scene_facts.h"
+#include "renderer/gpu_scene/scene_tables.h"
 #include "renderer/gpu_scene/shadow_map.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings.h"
@@ -84,10 +85,9 @@ struct gpu_scene {
     // multiple of a power of two, so that the translation does not round.
     double origin[3];
 
+    struct scene_tables tables;
     struct gpu_buffer *vertices;
     struct gpu_buffer *indices;
-    struct gpu_buffer *instance_blocks;
-    struct gpu_buffer *id_blocks;
     struct gpu_buffer *raster_vertices;
     struct gpu_buffer *raster_indices; // same triangles as `indices`, but rotated
     struct gpu_geometry *geometry;     // of the raster buffers
@@ -101,14 +101,10 @@ struct gpu_scene {
 
     struct bvh *bvh; // for rays; NULL until needed
 
-    struct gpu_buffer *materials;
-    struct gpu_buffer *texture_blocks;
     bool texture_transforms;                // any texture has a KHR_texture_transform
     bool second_uv_set;                     // any texture reads the second set of coordinates
     struct texture_space texture_spaces[2]; // sRGB colour, linear data
 
-    struct gpu_buffer *lights;
-    struct gpu_buffer *area_lights;
     uint32_t directional_light; // index in `lights` of the light with cascades, or NO_SHADOW
     float directional_axis[3];
     struct shadow_map *shadow_map;
@@ -120,7 +116,6 @@ struct gpu_scene {
     uint64_t caster_hash;     // hash of the casters, except their transforms
     bool casters_changed;     // since the shadow maps last handled it
 
-    struct gpu_buffer *environment;
     struct scene_environment environment_seen; // what the pictures below were made from; its
     uint64_t environment_serial;               // image may be gone, but not this number of it
     struct gpu_texture *environment_levels;

@@ -272,16 +272,11 @@ bool gpu_scene_upload_lights(struct gpu_scene *gpu_scene)
             for (uint32_t i = 0; round == 0 && i < counts->area_lights; i++)
                 add_area_light_shadow(builder, &area_lights[i]);
         }
-        done = gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->lights, "lights", GPU_BUFFER_STATIC,
-                                 count * sizeof(*lights)) &&
-               gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->area_lights, "lights.area",
-                                 GPU_BUFFER_STATIC, sizeof(area_lights)) &&
-               keep_shadow_map(gpu_scene, builder);
-    }
-    if (done) {
-        gpu_buffer_write(gpu_scene->lights, 0, count * sizeof(*lights), lights);
-        gpu_buffer_write(gpu_scene->area_lights, 0,
-                         gpu_scene->counts.area_lights * sizeof(*area_lights), area_lights);
+        done =
+            scene_tables_write(&gpu_scene->tables, TABLE_LIGHTS, lights, count * sizeof(*lights)) &&
+            scene_tables_write(&gpu_scene->tables, TABLE_AREA_LIGHTS, area_lights,
+                               gpu_scene->counts.area_lights * sizeof(*area_lights)) &&
+            keep_shadow_map(gpu_scene, builder);
     }
     free(builder);
     free(lights);

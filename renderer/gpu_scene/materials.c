@@ -120,15 +120,10 @@ bool gpu_scene_upload_materials(struct gpu_scene *gpu_scene)
         }
     }
     done = done &&
-           gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->materials, "materials", GPU_BUFFER_STATIC,
-                             count * sizeof(*materials)) &&
-           gpu_buffer_ensure(gpu_scene->gpu, &gpu_scene->texture_blocks, "materials.textures",
-                             GPU_BUFFER_STATIC, count * TEXTURE_SLOTS * sizeof(*textures));
-    if (done) {
-        gpu_buffer_write(gpu_scene->materials, 0, count * sizeof(*materials), materials);
-        gpu_buffer_write(gpu_scene->texture_blocks, 0, count * TEXTURE_SLOTS * sizeof(*textures),
-                         textures);
-    }
+           scene_tables_write(&gpu_scene->tables, TABLE_MATERIALS, materials,
+                              count * sizeof(*materials)) &&
+           scene_tables_write(&gpu_scene->tables, TABLE_TEXTURES, textures,
+                              count * TEXTURE_SLOTS * sizeof(*textures));
     free(materials);
     free(textures);
     return done;

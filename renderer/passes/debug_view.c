@@ -33,7 +33,7 @@ static bool debug_view_run(struct frame *frame, const struct pass *pass, struct 
      EFFECT_BIT(EFFECT_LIGHT_TILES))
 
 const struct pass debug_view_pass = {
-    .reads = RESOURCE(LIGHTS) | RESOURCE(SHADOW_MAP) | RESOURCE(IDS) | RESOURCE(DEPTH) |
+    .reads = RESOURCE(SCENE_TABLES) | RESOURCE(SHADOW_MAP) | RESOURCE(IDS) | RESOURCE(DEPTH) |
              RESOURCE(GBUFFER) | RESOURCE(LIGHT_MASKS) | RESOURCE(FRAGMENTS) | RESOURCE(VOXELS) |
              RESOURCE(VOXEL_RADIANCE) | RESOURCE(IRRADIANCE),
     .writes = RESOURCE(RADIANCE),

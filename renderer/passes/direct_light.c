@@ -9,7 +9,8 @@ static bool direct_light_run(struct frame *frame, const struct pass *pass, struc
 const struct pass direct_light_pass = {
     .reads = RESOURCE(GBUFFER) | RESOURCE(DEPTH) | RESOURCE(SHADOW_MAP) | RESOURCE(VOXEL_RADIANCE) |
              RESOURCE(LIGHT_MASKS) | RESOURCE(RADIANCE) | RESOURCE(ACCUMULATION) |
-             RESOURCE(LIGHTS) | RESOURCE(VOXELS) | RESOURCE(IRRADIANCE) | RESOURCE(ENVIRONMENT),
+             RESOURCE(SCENE_TABLES) | RESOURCE(VOXELS) | RESOURCE(IRRADIANCE) |
+             RESOURCE(ENVIRONMENT),
     .writes = RESOURCE(RADIANCE),
     .program_count = 1,
     .programs = {{"light/direct_light.comp", DIRECT_LIGHT_EFFECTS,

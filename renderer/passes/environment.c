@@ -8,7 +8,7 @@ static bool environment_run(struct frame *frame, const struct pass *pass, struct
 }
 
 const struct pass environment_pass = {
-    .reads = RESOURCE(GBUFFER) | RESOURCE(DEPTH) | RESOURCE(ENVIRONMENT),
+    .reads = RESOURCE(GBUFFER) | RESOURCE(DEPTH) | RESOURCE(ENVIRONMENT) | RESOURCE(SCENE_TABLES),
     .writes = RESOURCE(RADIANCE),
     .program_count = 1,
     .programs = {{"light/environment.comp",

@@ -65,9 +65,14 @@ static void bind_buffers(const struct frame *frame, const struct pass *pass)
 {
     uint32_t declared = pass->reads | pass->writes;
     for (uint32_t i = 0; i < RESOURCE_COUNT; i++)
-        if ((declared & (1u << i)) && resource_rows[i].bytes)
-            gpu_bind_storage(frame->gpu, (uint32_t)__builtin_ctz(resource_rows[i].storage),
-                             frame->view->buffers[i]);
+        if ((declared & (1u << i)) && resource_rows[i].bytes) {
+            const struct resource_row *row = &resource_rows[i];
+            const struct gpu_buffer *buffer = frame->view->buffers[i];
+            gpu_bind_storage(frame->gpu, (uint32_t)__builtin_ctz(row->storage), buffer);
+            if (row->units)
+                gpu_bind_texels(frame->gpu, (uint32_t)__builtin_ctzll(row->units), buffer,
+                                row->texel);
+        }
 }
 
 bool passes_execute(struct frame *frame, struct error *out_error)

@@ -7,7 +7,8 @@ static bool gbuffer_run(struct frame *frame, const struct pass *pass, struct err
 }
 
 const struct pass gbuffer_pass = {
-    .reads = RESOURCE(IDS) | RESOURCE(DEPTH) | RESOURCE(GEOMETRY) | RESOURCE(MATERIALS),
+    .reads = RESOURCE(IDS) | RESOURCE(DEPTH) | RESOURCE(GEOMETRY) | RESOURCE(SCENE_TABLES) |
+             RESOURCE(TEXTURES),
     .writes = RESOURCE(GBUFFER),
     .program_count = 1,
     .programs = {{"visibility/gbuffer.comp", EFFECT_BIT(EFFECT_VERTEX_COLORS), TEXTURE_SWITCHES,

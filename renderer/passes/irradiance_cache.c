@@ -43,7 +43,7 @@ static bool irradiance_cache_run(struct frame *frame, const struct pass *pass,
 
 const struct pass irradiance_cache_pass = {
     .reads = RESOURCE(GBUFFER) | RESOURCE(VOXELS) | RESOURCE(VOXEL_RADIANCE) | RESOURCE(DEPTH) |
-             RESOURCE(ENVIRONMENT),
+             RESOURCE(ENVIRONMENT) | RESOURCE(SCENE_TABLES),
     .writes = RESOURCE(IRRADIANCE),
     .program_count = PROGRAM_COUNT,
     .programs = {{"gi/cache_request.comp", EFFECTS, SWITCHES, NULL},

@@ -11,7 +11,7 @@ static bool light_tiles_run(struct frame *frame, const struct pass *pass, struct
 }
 
 const struct pass light_tiles_pass = {
-    .reads = RESOURCE(DEPTH) | RESOURCE(LIGHTS),
+    .reads = RESOURCE(DEPTH) | RESOURCE(SCENE_TABLES),
     .writes = RESOURCE(LIGHT_MASKS),
     .program_count = 1,
     .programs = {{"light/light_tiles.comp", EFFECT_BIT(EFFECT_TRANSPARENCY), 0, NULL}},

@@ -46,7 +46,7 @@ struct pass {
      SWITCH_BIT(LIT_HITS))
 #define HIT_FIXED "LIGHT_TILES 0\nSHADOW_TAPS 1u\n"
 #define HIT_READS                                                                                  \
-    (RESOURCE(BVH) | RESOURCE(GEOMETRY) | RESOURCE(MATERIALS) | RESOURCE(LIGHTS) |                 \
+    (RESOURCE(BVH) | RESOURCE(GEOMETRY) | RESOURCE(SCENE_TABLES) | RESOURCE(TEXTURES) |            \
      RESOURCE(SHADOW_MAP) | RESOURCE(ENVIRONMENT) | RESOURCE(VOXELS) | RESOURCE(VOXEL_RADIANCE) |  \
      RESOURCE(IRRADIANCE))
 

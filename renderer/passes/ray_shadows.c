@@ -12,7 +12,7 @@ static bool ray_shadows_run(struct frame *frame, const struct pass *pass, struct
 }
 
 const struct pass ray_shadows_pass = {
-    .reads = RESOURCE(BVH) | RESOURCE(LIGHTS) | RESOURCE(GBUFFER) | RESOURCE(DEPTH),
+    .reads = RESOURCE(BVH) | RESOURCE(SCENE_TABLES) | RESOURCE(GBUFFER) | RESOURCE(DEPTH),
     .writes = RESOURCE(ACCUMULATION),
     .program_count = 1,
     .programs = {{"gi/ray_shadows.comp",

@@ -161,7 +161,7 @@ static bool shadow_map_run(struct frame *frame, const struct pass *pass, struct 
 }
 
 const struct pass shadow_map_pass = {
-    .reads = RESOURCE(MATERIALS) | RESOURCE(GEOMETRY),
+    .reads = RESOURCE(SCENE_TABLES) | RESOURCE(TEXTURES) | RESOURCE(GEOMETRY),
     .writes = RESOURCE(SHADOW_MAP),
     .program_count = PROGRAM_COUNT,
     .programs = {{"visibility/visibility", 0, TEXTURE_SWITCHES,

@@ -43,8 +43,8 @@ static bool transparency_run(struct frame *frame, const struct pass *pass, struc
 const struct pass transparency_pass = {
     .reads = RESOURCE(DEPTH) | RESOURCE(SHADOW_MAP) | RESOURCE(VOXEL_RADIANCE) |
              RESOURCE(IRRADIANCE) | RESOURCE(LIGHT_MASKS) | RESOURCE(RADIANCE) |
-             RESOURCE(ENVIRONMENT) | RESOURCE(GEOMETRY) | RESOURCE(LIGHTS) | RESOURCE(MATERIALS) |
-             RESOURCE(VOXELS),
+             RESOURCE(ENVIRONMENT) | RESOURCE(GEOMETRY) | RESOURCE(SCENE_TABLES) |
+             RESOURCE(SCENE_TABLES) | RESOURCE(TEXTURES) | RESOURCE(VOXELS),
     .writes = RESOURCE(FRAGMENTS) | RESOURCE(RADIANCE),
     .program_count = PROGRAM_COUNT,
     .programs = {{"visibility/visibility", 0, TEXTURE_SWITCHES,

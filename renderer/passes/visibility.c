@@ -28,7 +28,7 @@ static bool visibility_run(struct frame *frame, const struct pass *pass, struct 
 }
 
 const struct pass visibility_pass = {
-    .reads = RESOURCE(MATERIALS) | RESOURCE(GEOMETRY),
+    .reads = RESOURCE(SCENE_TABLES) | RESOURCE(TEXTURES) | RESOURCE(GEOMETRY),
     .writes = RESOURCE(IDS) | RESOURCE(DEPTH),
     .program_count = PROGRAM_COUNT,
     .programs = {{"visibility/visibility", 0, TEXTURE_SWITCHES,

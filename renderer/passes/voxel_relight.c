@@ -27,7 +27,8 @@ static bool voxel_relight_run(struct frame *frame, const struct pass *pass, stru
 
 const struct pass voxel_relight_pass = {
     // Also reads the irradiance cache, as an earlier frame left it.
-    .reads = RESOURCE(VOXELS) | RESOURCE(SHADOW_MAP) | RESOURCE(LIGHTS) | RESOURCE(MATERIALS),
+    .reads = RESOURCE(VOXELS) | RESOURCE(SHADOW_MAP) | RESOURCE(SCENE_TABLES) |
+             RESOURCE(SCENE_TABLES) | RESOURCE(TEXTURES),
     .writes = RESOURCE(VOXEL_RADIANCE) | RESOURCE(IRRADIANCE),
     .program_count = PROGRAM_COUNT,
     .programs = {{"voxel/voxel_relight.comp", EFFECTS, SWITCHES, FIXED},

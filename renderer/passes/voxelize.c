@@ -106,7 +106,7 @@ static bool voxelize_run(struct frame *frame, const struct pass *pass, struct er
 #define SWITCHES (TEXTURE_SWITCHES | SWITCH_BIT(VOXEL_DIRECTIONS))
 
 const struct pass voxelize_pass = {
-    .reads = RESOURCE(GEOMETRY) | RESOURCE(MATERIALS),
+    .reads = RESOURCE(GEOMETRY) | RESOURCE(SCENE_TABLES) | RESOURCE(TEXTURES),
     .writes = RESOURCE(VOXELS) | RESOURCE(IRRADIANCE) | RESOURCE(VOXEL_RADIANCE),
     .program_count = PROGRAM_COUNT,
     .programs = {[PROGRAM_CLEAR] = {"voxel/voxel_clear.comp", EFFECTS, SWITCHES, NULL},

@@ -6,7 +6,6 @@
 // present geometry. Yellow: light of an older generation, to be looked up at the cones' hits. Red:
 // cones traced through older geometry. Light blue: never traced, light copied from another level.
 // Blue: never traced. Grey: no record. The older its newest request, the darker.
-#define CELLS_ACCESS readonly
 #include "lib/gbuffer.glsl"
 #include "lib/cache_lookup.glsl"
 #include "lib/radiance_buffer.glsl"
@@ -34,7 +33,7 @@ uint record_at(vec3 world, vec3 normal)
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         uint words = cell_face(cell, face);
         float alike = dot(normal, face_direction(face));
-        if (words != VOXEL_NONE && faces[words + FACE_NORMAL] != VOXEL_NONE && alike > maximum) {
+        if (words != VOXEL_NONE && face_word(words, FACE_NORMAL) != VOXEL_NONE && alike > maximum) {
             found = words;
             maximum = alike;
         }
@@ -47,7 +46,7 @@ vec3 cache_color(surface s)
     uint words = record_at(s.position, s.geometric_normal);
     if (words == VOXEL_NONE)
         return vec3(0.25);
-    uint state = faces[words + FACE_STATE];
+    uint state = face_word(words, FACE_STATE);
     vec3 color = vec3(0.2, 0.8, 0.25);
     if ((state & 0xffffu) != voxels.cache_generation)
         color = vec3(0.95, 0.8, 0.15);
@@ -55,7 +54,7 @@ vec3 cache_color(surface s)
         color = vec3(0.9, 0.2, 0.15);
     if ((state & FACE_MARCHED) == 0u)
         color = (state & FACE_VALID) != 0u ? vec3(0.35, 0.75, 0.95) : vec3(0.15, 0.25, 0.95);
-    uint asked = faces[words + FACE_REQUEST];
+    uint asked = face_word(words, FACE_REQUEST);
     float age = asked == 0u ? 1.0 : min(float(voxels.frame_number - asked) / REQUEST_FRAMES, 1.0);
     return color * mix(1.0, DARKEST, age);
 }

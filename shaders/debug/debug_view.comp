@@ -13,10 +13,7 @@ layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 layout(binding = UNIT_IDS) uniform usampler2D ids;
 
 #if LIGHT_TILES
-layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
-{
-    uint light_masks[];
-};
+layout(binding = UNIT_LIGHT_MASKS) uniform usamplerBuffer light_masks;
 #endif
 
 const uint VIEW_ALBEDO = 2u;
@@ -52,7 +49,8 @@ uint lights_of_tile(uvec2 pixel)
     uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.tile_count.x + pixel.x / LIGHT_TILE_EDGE;
     uint count = 0u;
     for (uint word = 0u; word < frame.light_mask_words; word++)
-        count += uint(bitCount(light_masks[tile * frame.light_mask_words + word]));
+        count +=
+            uint(bitCount(texelFetch(light_masks, int(tile * frame.light_mask_words + word)).x));
     return count;
 #else
     return frame.light_count;

@@ -45,7 +45,7 @@ uint count_bad(uint at, finite_check_shape shape, finite_check_masks masks)
 {
 #if TEXTURE == CHECK_BUFFER
     uint bit = 1u << min(at % shape.record_words, 31u);
-    uint word = words[at];
+    uint word = words[masks.first_word + at];
     return ((masks.floats & bit) != 0u ? float_is_bad(word) : 0u) +
            ((masks.low_halves & bit) != 0u ? half_is_bad(word) : 0u) +
            ((masks.high_halves & bit) != 0u ? half_is_bad(word >> 16) : 0u);

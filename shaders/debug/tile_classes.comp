@@ -8,7 +8,6 @@
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
 #if LAYERS
-#define FRAGMENTS_ACCESS readonly
 #include "lib/fragments.glsl"
 #endif
 
@@ -30,7 +29,7 @@ uint pixel_classes(uvec2 pixel, surface s)
     if (s.shading != SHADE_BACKGROUND && any(greaterThan(s.emission, vec3(0.0))))
         classes = CLASS_EMISSIVE;
 #if LAYERS
-    if (fragment_words[head_index(pixel)] != 0u)
+    if (fragment_word(head_index(pixel)) != 0u)
         classes |= CLASS_TRANSPARENT;
 #endif
     return classes;

@@ -5,7 +5,6 @@
 // radiance; 4: its cached irradiance / pi. CELLS 0: a mip level, which has only opacity and
 // radiance; a checker stands for the rest. A voxel without a surface on the chosen face shows,
 // dimmed, the face most turned to the eye.
-#define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 #include "lib/display.glsl"
 #include "lib/radiance_buffer.glsl"
@@ -103,7 +102,7 @@ bool face_has_surface(uint level, ivec3 voxel, uint cell, uint face, float minim
     return face_texel(level, voxel, face).a > minimum;
 #else
     uint words = cell == VOXEL_NONE ? VOXEL_NONE : cell_face(cell, face);
-    return words != VOXEL_NONE && faces[words + FACE_NORMAL] != VOXEL_NONE;
+    return words != VOXEL_NONE && face_word(words, FACE_NORMAL) != VOXEL_NONE;
 #endif
 }
 
@@ -135,8 +134,8 @@ uint record_with_albedo(uint level, ivec3 voxel, uint face, uint words)
 {
     bool bare = true;
     for (uint finer = level; finer > 0u && bare; finer--) {
-        bare = faces[words + FACE_ALBEDO] == 0u &&
-               unpackHalf2x16(faces[words + FACE_DIRECT + 1u]).y == 0.0;
+        bare = face_word(words, FACE_ALBEDO) == 0u &&
+               unpackHalf2x16(face_word(words, FACE_DIRECT + 1u)).y == 0.0;
         uint found = VOXEL_NONE;
         ivec3 corner = 2 * voxel;
         for (int i = 0; i < 8; i++) {
@@ -144,7 +143,7 @@ uint record_with_albedo(uint level, ivec3 voxel, uint face, uint words)
             uint cell =
                 voxel_in_level(finer - 1u, child) ? find_cell(finer - 1u, child) : VOXEL_NONE;
             uint record = cell == VOXEL_NONE ? VOXEL_NONE : cell_face(cell, face);
-            if (record != VOXEL_NONE && faces[record + FACE_NORMAL] != VOXEL_NONE) {
+            if (record != VOXEL_NONE && face_word(record, FACE_NORMAL) != VOXEL_NONE) {
                 found = record;
                 voxel = child;
             }
@@ -162,15 +161,15 @@ vec3 face_color(uint level, ivec3 voxel, uint face, uint words)
 #if SHOW == 0
     return vec3(1.0 - exp(-face_texel(level, voxel, face).a));
 #elif SHOW == 1
-    uint bits = faces[record_with_albedo(level, voxel, face, words) + FACE_ALBEDO];
+    uint bits = face_word(record_with_albedo(level, voxel, face, words), FACE_ALBEDO);
     return transfer(vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0);
 #elif SHOW == 2
-    return octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL])) * 0.5 + 0.5;
+    return octahedral_decode(unpackSnorm2x16(face_word(words, FACE_NORMAL))) * 0.5 + 0.5;
 #elif SHOW == 3
     vec4 texel = face_texel(level, voxel, face);
     return texel.rgb * (voxels.radiance_scale / texel.a);
 #else
-    bool known = (faces[words + FACE_STATE] & FACE_VALID) != 0u;
+    bool known = (face_word(words, FACE_STATE) & FACE_VALID) != 0u;
     return known ? face_light(words).rgb * voxels.radiance_scale : vec3(0.0);
 #endif
 }

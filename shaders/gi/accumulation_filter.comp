@@ -24,7 +24,7 @@ void main()
 #if SPECULAR_LOBE
     others = smoothstep(FILTERED_ROUGHNESS.x, FILTERED_ROUGHNESS.y, s.roughness);
 #endif
-    vec4 sum = accumulated[accumulation_index(FROM, uvec2(texel))];
+    vec4 sum = former_sum(accumulation_index(FROM, uvec2(texel)));
     float weight = 1.0;
     for (int y = -2; y <= 2; y++)
         for (int x = -2; x <= 2; x++) {
@@ -36,7 +36,7 @@ void main()
             float w = others * likeness(s, n, pixel_m) * window_weight(x, y);
             if (w <= 0.0 || (SPECULAR_LOBE != 0 && !needs_specular_trace(n)))
                 continue;
-            sum += w * accumulated[accumulation_index(FROM, uvec2(other))];
+            sum += w * former_sum(accumulation_index(FROM, uvec2(other)));
             weight += w;
         }
 #if SPECULAR_LOBE

@@ -4,15 +4,11 @@
 // STAGE 0: queues faces to march (cones not traced through the present geometry) and faces to look
 // up (light of an older generation). Requested faces come first; among those to march new ones
 // lead, among those to look up ones that changed much. STAGE 1: dispatch arguments.
-#define CELLS_ACCESS readonly
 #include "lib/voxel_cells.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
-layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
-{
-    uint list_words[];
-};
+layout(binding = UNIT_VOXEL_LISTS) uniform usamplerBuffer list_texels;
 
 layout(std430, binding = BIND_VOXEL_COUNTERS) buffer voxel_counter_storage
 {
@@ -41,18 +37,18 @@ void main()
     uint number = gl_GlobalInvocationID.x;
     if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
         return;
-    uint cell = list_words[LIST_LIT * voxels.list_capacity + number];
+    uint cell = texelFetch(list_texels, int(LIST_LIT * voxels.list_capacity + number)).x;
     for (uint face = 0u; face < VOXEL_FACES; face++) {
         uint words = cell_face(cell, face);
-        if (words == VOXEL_NONE || faces[words + FACE_NORMAL] == VOXEL_NONE)
+        if (words == VOXEL_NONE || face_word(words, FACE_NORMAL) == VOXEL_NONE)
             continue;
-        uint state = faces[words + FACE_STATE];
+        uint state = face_word(words, FACE_STATE);
         bool marched = (state & FACE_MARCHED) != 0u;
         bool fresh = marched && (state >> FACE_EPOCH_BIT) == voxels.geometry_epoch;
         bool lit = (state & 0xffffu) == voxels.cache_generation;
         if (lit && fresh)
             continue;
-        uint asked = faces[words + FACE_REQUEST];
+        uint asked = face_word(words, FACE_REQUEST);
         bool seen = asked != 0u && voxels.frame_number - asked < REQUEST_FRAMES;
         if (!seen && voxels.all_faces == 0u)
             continue;

@@ -4,6 +4,7 @@
 // MARCH 1: traces their cones and stores where each hits. MARCH 0: reads the radiance at the stored
 // hits.
 #define CONE_SMOOTH 0
+#define FACES_STORED
 #include "lib/voxel_cells.glsl"
 #include "lib/cone_hemisphere.glsl"
 
@@ -16,10 +17,7 @@ layout(std430, binding = BIND_VOXEL_COUNTERS) buffer voxel_counter_storage
 
 #include "lib/clamp_half.glsl"
 
-layout(std430, binding = BIND_CACHE_QUEUE) readonly buffer queue_storage
-{
-    uint queue[];
-};
+layout(binding = UNIT_CACHE_QUEUE) uniform usamplerBuffer queue;
 
 // Queue entry of an invocation, class by class; VOXEL_NONE past the end.
 uint find_entry(uint number)
@@ -36,7 +34,7 @@ uint find_entry(uint number)
     for (;;) {
         uint length = min(counters[COUNTER_CACHE_CLASSES + urgency], voxels.list_capacity);
         if (number < length)
-            return queue[urgency * voxels.list_capacity + number];
+            return texelFetch(queue, int(urgency * voxels.list_capacity + number)).x;
         number -= length;
         urgency++;
     }
@@ -54,12 +52,15 @@ void main()
     uint words = find_entry(gl_GlobalInvocationID.x);
     if (words == VOXEL_NONE)
         return;
-    uint state = faces[words + FACE_STATE];
-    uint cell = faces[words + FACE_CELL] >> 3;
-    uint level = cells[cell * CELL_WORDS] >> CELL_LEVEL_BIT;
-    vec3 corner = vec3(slot_voxel(level, cells[cell * CELL_WORDS] & CELL_SLOT_MASK));
-    vec3 normal = octahedral_decode(unpackSnorm2x16(faces[words + FACE_NORMAL]));
-    uint bits = faces[words + FACE_SUB_VOXEL_POSITION];
+    uvec4 shown = face_shown(words);
+    uint state = shown.w;
+    uint cell = cell_word(face_word(words, FACE_CELL) >> 3, 0u);
+    uint level = cell >> CELL_LEVEL_BIT;
+    vec3 corner = vec3(slot_voxel(level, cell & CELL_SLOT_MASK));
+    vec3 normal = octahedral_decode(unpackSnorm2x16(shown.x));
+    uvec4 former = face_words(words, FACE_LIGHT); // light (two words), position, request
+    vec4 former_light = vec4(unpackHalf2x16(former.x), unpackHalf2x16(former.y));
+    uint bits = former.z;
     vec3 sub_voxel_position =
         vec3(bits & 1023u, (bits >> 10) & 1023u, (bits >> 20) & 1023u) / 1023.0;
     vec3 position = (corner + sub_voxel_position) * voxels.levels[level].voxel_edge_m;
@@ -81,21 +82,22 @@ void main()
         // in which a face was marched.
         add_cone_at_hit(g, i, hit, found);
 #else
-        add_cone_at_hit(g, i, faces[words + FACE_WORDS + i], found);
+        add_cone_at_hit(g, i, face_word(words, FACE_WORDS + i), found);
 #endif
     }
 #if MARCH
     found.ambient_visibility = along.ambient_visibility;
 #else
-    found.ambient_visibility = face_light(words).a;
+    found.ambient_visibility = former_light.a;
 #endif
-    vec3 before = face_light(words).rgb;
+    vec3 before = former_light.rgb;
     vec3 light = clamp_to_half(found.light);
-    faces[words + FACE_LIGHT] = packHalf2x16(light.rg);
+    uint red_green = packHalf2x16(light.rg);
+    faces[words + FACE_LIGHT] = red_green;
     faces[words + FACE_LIGHT + 1u] = packHalf2x16(vec2(light.b, found.ambient_visibility));
     // New faces show their own light until they are smoothed.
     if ((state & FACE_MARCHED) == 0u) {
-        faces[words + FACE_SHOWN] = faces[words + FACE_LIGHT];
+        faces[words + FACE_SHOWN] = red_green;
         faces[words + FACE_SHOWN + 1u] =
             packHalf2x16(vec2(light.b, max(found.ambient_visibility, 0.001)));
     }

@@ -4,7 +4,6 @@
 //
 // From the cache, an invocation shades 2x2 pixels: irradiance varies little between them, so it is
 // looked up once and again only for pixels on another surface.
-#define CELLS_ACCESS readonly
 #include "lib/ray_accumulation.glsl"
 #include "lib/gbuffer.glsl"
 #include "lib/cache_lookup.glsl"
@@ -31,6 +30,9 @@ void main()
         uint at = pixel_index(pixel);
 #if ALONE
         radiance[at] = vec4(0.0, 0.0, 0.0, 1.0);
+        vec3 before = vec3(0.0);
+#else
+        vec3 before = former_radiance(at);
 #endif
         surface s = gbuffer_load(pixel);
         if (s.shading >= SHADE_UNLIT)
@@ -43,7 +45,7 @@ void main()
             known_normal = s.geometric_normal;
             known_position = s.position;
         }
-        radiance[at].rgb += reflect_irradiance(s, known);
+        radiance[at] = vec4(before + reflect_irradiance(s, known), 1.0);
     }
 }
 #else
@@ -51,9 +53,9 @@ void main()
 vec4 found_at(uvec2 texel)
 {
 #if FILTERED
-    return accumulated[accumulation_index(PLANE_DIFFUSE_MEAN, texel)];
+    return former_sum(accumulation_index(PLANE_DIFFUSE_MEAN, texel));
 #else
-    return accumulated[accumulation_index(PLANE_DIFFUSE, texel)] / voxels.sample_count;
+    return former_sum(accumulation_index(PLANE_DIFFUSE, texel)) / voxels.sample_count;
 #endif
 }
 
@@ -93,6 +95,9 @@ void main()
     uint at = pixel_index(pixel);
 #if ALONE
     radiance[at] = vec4(0.0, 0.0, 0.0, 1.0);
+    vec3 before = vec3(0.0);
+#else
+    vec3 before = former_radiance(at);
 #endif
     surface s = gbuffer_load(pixel);
     if (s.shading >= SHADE_UNLIT)
@@ -102,6 +107,6 @@ void main()
 #else
     vec4 light = found_at(pixel);
 #endif
-    radiance[at].rgb += reflect_irradiance(s, light);
+    radiance[at] = vec4(before + reflect_irradiance(s, light), 1.0);
 }
 #endif

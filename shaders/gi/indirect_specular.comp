@@ -25,7 +25,7 @@ layout(std430, binding = BIND_TILES) readonly buffer tile_storage
 // Accumulated specular radiance of the square that the pixel belongs to.
 vec3 mirrored_light(surface s, uvec2 pixel)
 {
-    return accumulated[accumulation_index(PLANE_SPECULAR_MEAN, pixel / uint(GATHER_STEP))].rgb;
+    return former_sum(accumulation_index(PLANE_SPECULAR_MEAN, pixel / uint(GATHER_STEP))).rgb;
 }
 #else
 #define SPECULAR_OCCLUSION s.occlusion
@@ -66,7 +66,8 @@ void main()
         vec3 f0 = mix(s.f0, s.base_color, s.metallic);
         float f90 = mix(s.f90, 1.0, s.metallic);
         vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
-        radiance[pixel_index(pixel)].rgb +=
-            reflected * light * (SPECULAR_OCCLUSION * voxels.indirect_intensity);
+        uint at = pixel_index(pixel);
+        vec3 added = reflected * light * (SPECULAR_OCCLUSION * voxels.indirect_intensity);
+        radiance[at] = vec4(former_radiance(at) + added, 1.0);
     }
 }

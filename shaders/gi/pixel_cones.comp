@@ -33,6 +33,6 @@ void main()
         uint hit;
         add_cone(g, i, found, hit);
     }
-    vec4 sum = first ? vec4(0.0) : accumulated[at];
+    vec4 sum = first ? vec4(0.0) : former_sum(at);
     accumulated[at] = sum + vec4(found.light, found.ambient_visibility);
 }

@@ -35,5 +35,5 @@ void main()
                      min(found.distance_m / voxels.ao_radius_m, 1.0));
     }
     uint at = accumulation_index(PLANE_DIFFUSE, texel);
-    accumulated[at] = (picture == 0u ? vec4(0.0) : accumulated[at]) + light;
+    accumulated[at] = (picture == 0u ? vec4(0.0) : former_sum(at)) + light;
 }

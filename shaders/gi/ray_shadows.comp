@@ -61,7 +61,7 @@ vec3 light_visibility(surface s, vec3 u)
     light_sum sum = light_sum(vec3(0.0), vec3(0.0));
 #if PUNCTUAL_LIGHTS
     for (uint i = 0u; i < frame.light_count; i++) {
-        light_block light = lights[i];
+        light_block light = load_light(i);
         if (!has_size(light))
             continue;
         // A sphere light, sampled as the disk that faces the surface.
@@ -75,7 +75,7 @@ vec3 light_visibility(surface s, vec3 u)
 #endif
 #if AREA_LIGHTS
     for (uint i = 0u; i < frame.area_light_count; i++) {
-        area_light_block light = area_lights[i];
+        area_light_block light = load_area_light(i);
         if (light.shadow.first_view == NO_SHADOW)
             continue;
         add_light(sum, s, area_unshadowed(s, light), point_on(light, s, u), fract(16.0 * u.z));
@@ -106,6 +106,7 @@ void main()
     surface s = gbuffer_load(pixel);
     if (s.shading >= SHADE_UNLIT)
         return;
-    accumulated[visibility_index(pixel)] +=
-        vec4(light_visibility(s, ray_numbers(pixel, picture / (STEP * STEP))), 1.0);
+    uint at = visibility_index(pixel);
+    accumulated[at] = (picture == 0u ? vec4(0.0) : former_sum(at)) +
+                      vec4(light_visibility(s, ray_numbers(pixel, picture / (STEP * STEP))), 1.0);
 }

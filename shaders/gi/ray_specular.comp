@@ -64,7 +64,7 @@ void main()
         return;
     uvec2 texel = first / uint(GATHER_STEP);
     uint at = accumulation_index(PLANE_SPECULAR, texel);
-    vec4 sum = picture == 0u ? vec4(0.0) : accumulated[at];
+    vec4 sum = picture == 0u ? vec4(0.0) : former_sum(at);
     float alpha = alpha_of(s);
     mat3 axes = frame_about(s.normal);
     vec3 view = s.view * axes;

@@ -2,8 +2,8 @@
 #include "lib/frame.glsl"
 #include "shared/bvh.h"
 
-layout(binding = UNIT_BVH_NODES) uniform usampler2D bvh_nodes;
-layout(binding = UNIT_BVH_TRIANGLES) uniform usampler2D bvh_triangles;
+layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer bvh_nodes;
+layout(binding = UNIT_BVH_TRIANGLES) uniform usamplerBuffer bvh_triangles;
 
 struct bvh_hit {
     float distance; // in units of the direction's length
@@ -11,17 +11,16 @@ struct bvh_hit {
     vec2 weights; // barycentric, of the second and third corner
 };
 
-const uint BVH_ROW_MASK = (1u << BVH_ROW_BITS) - 1u;
 const uint BVH_COUNT_MASK = (1u << BVH_COUNT_BITS) - 1u;
 
 uvec4 bvh_node_texel(uint at)
 {
-    return texelFetch(bvh_nodes, ivec2(at & BVH_ROW_MASK, at >> BVH_ROW_BITS), 0);
+    return texelFetch(bvh_nodes, int(at));
 }
 
 uvec4 bvh_triangle_texel(uint at)
 {
-    return texelFetch(bvh_triangles, ivec2(at & BVH_ROW_MASK, at >> BVH_ROW_BITS), 0);
+    return texelFetch(bvh_triangles, int(at));
 }
 
 // Origin of rays that leave a surface: offset by what rounding may have moved it.

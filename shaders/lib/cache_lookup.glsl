@@ -45,25 +45,24 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
         ivec3 step = ivec3(i & 1, (i >> 1) & 1, i >> 2);
         uvec3 slot = uvec3((low + step) & edge_mask);
         uint cell =
-            voxel_index[first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift)))];
+            index_word(first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift))));
         if (cell == 0u)
             continue;
-        cell = (cell - 1u) * CELL_WORDS + CELL_FACES;
+        cell -= 1u;
         vec3 near = mix(1.0 - t, t, vec3(step));
         float fraction = near.x * near.y * near.z + 1e-4;
         for (uint left = axes; left != 0u; left &= left - 1u) {
             uint axis = uint(findLSB(left));
             float along = axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z;
-            uint record = cells[cell + 2u * axis + (along < 0.0 ? 1u : 0u)];
+            uint record = cell_word(cell, CELL_FACES + 2u * axis + (along < 0.0 ? 1u : 0u));
             if (record == 0u)
                 continue;
-            uint words = (record - 1u) * record_words;
-            uint direction = faces[words + FACE_NORMAL];
-            if (direction == VOXEL_NONE)
+            uvec4 shown = face_shown((record - 1u) * record_words);
+            if (shown.x == VOXEL_NONE)
                 continue;
-            float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
+            float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(shown.x))), 0.0);
             facing *= facing;
-            vec4 light = face_shown_light(words);
+            vec4 light = face_shown_light(shown);
             // Ambient visibility 0 marks an unknown face.
             float w = light.a > 0.0 ? fraction * facing * facing : 0.0;
             sum += w * light;
@@ -82,11 +81,11 @@ void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout 
         uint words = cell_face(cell, face);
         if (words == VOXEL_NONE)
             continue;
-        uint direction = faces[words + FACE_NORMAL];
-        if (direction == VOXEL_NONE || (faces[words + FACE_STATE] & FACE_VALID) == 0u)
+        uvec4 shown = face_shown(words);
+        if (shown.x == VOXEL_NONE || (shown.w & FACE_VALID) == 0u)
             continue;
-        float w = 0.01 + max(dot(normal, octahedral_decode(unpackSnorm2x16(direction))), 0.0);
-        sum += w * face_shown_light(words);
+        float w = 0.01 + max(dot(normal, octahedral_decode(unpackSnorm2x16(shown.x))), 0.0);
+        sum += w * face_shown_light(shown);
         weight += w;
     }
 }

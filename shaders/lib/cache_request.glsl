@@ -1,4 +1,5 @@
 // Requests voxel faces of the irradiance cache.
+#define FACES_STORED
 #include "lib/cache_lookup.glsl"
 
 // Requests the faces that cached_irradiance() reads.

@@ -1,11 +1,19 @@
 // Environment light: background, ambient diffuse and specular.
 #include "lib/brdf.glsl"
+#include "lib/scene_tables.glsl"
 #include "shared/environment_block.h"
 
-layout(std430, binding = BIND_ENVIRONMENT) readonly buffer environment_storage
+// Texels of environment_block.
+const uint ENVIRONMENT_KIND = uint(ENVIRONMENT_SH_COEFFICIENTS); // equirectangular, level count
+const uint ENVIRONMENT_ZENITH = ENVIRONMENT_KIND + 1u;
+const uint ENVIRONMENT_HORIZON = ENVIRONMENT_KIND + 2u;
+const uint ENVIRONMENT_GROUND = ENVIRONMENT_KIND + 3u;
+const uint ENVIRONMENT_BRDF = ENVIRONMENT_KIND + 4u;
+
+vec4 environment_floats(uint texel)
 {
-    environment_block environment;
-};
+    return table_floats(frame.environment_texel + texel);
+}
 
 layout(binding = UNIT_ENVIRONMENT) uniform sampler2DArray
     environment_levels; // prefiltered by roughness
@@ -23,26 +31,26 @@ vec3 to_environment(vec3 direction)
 vec3 environment_radiance(vec3 direction)
 {
     vec3 d = to_environment(direction);
-    if (environment.equirectangular != 0u) {
+    if (table_words(frame.environment_texel + ENVIRONMENT_KIND).x != 0u) {
         vec2 uv = vec2(0.5 + atan(d.x, -d.z) / (2.0 * PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
         return textureLod(environment_background, uv, 0.0).rgb * frame.environment_intensity;
     }
-    vec3 pole = d.y >= 0.0 ? environment.zenith : environment.ground;
-    return mix(environment.horizon, pole, abs(d.y)) * frame.environment_intensity;
+    vec3 pole = environment_floats(d.y >= 0.0 ? ENVIRONMENT_ZENITH : ENVIRONMENT_GROUND).rgb;
+    return mix(environment_floats(ENVIRONMENT_HORIZON).rgb, pole, abs(d.y)) *
+           frame.environment_intensity;
 }
 
 // Irradiance / pi for a surface with unit normal n.
 vec3 environment_diffuse(vec3 normal)
 {
     vec3 n = to_environment(normal);
-    vec3 sum = environment.irradiance_sh[0].rgb;
-    sum += environment.irradiance_sh[1].rgb * n.y + environment.irradiance_sh[2].rgb * n.z +
-           environment.irradiance_sh[3].rgb * n.x;
-    sum += environment.irradiance_sh[4].rgb * (n.x * n.y) +
-           environment.irradiance_sh[5].rgb * (n.y * n.z) +
-           environment.irradiance_sh[6].rgb * (3.0 * n.z * n.z - 1.0) +
-           environment.irradiance_sh[7].rgb * (n.x * n.z) +
-           environment.irradiance_sh[8].rgb * (n.x * n.x - n.y * n.y);
+    vec3 sum = environment_floats(0u).rgb;
+    sum += environment_floats(1u).rgb * n.y + environment_floats(2u).rgb * n.z +
+           environment_floats(3u).rgb * n.x;
+    sum += environment_floats(4u).rgb * (n.x * n.y) + environment_floats(5u).rgb * (n.y * n.z) +
+           environment_floats(6u).rgb * (3.0 * n.z * n.z - 1.0) +
+           environment_floats(7u).rgb * (n.x * n.z) +
+           environment_floats(8u).rgb * (n.x * n.x - n.y * n.y);
     return max(sum, 0.0) * frame.environment_intensity;
 }
 
@@ -53,8 +61,8 @@ vec2 environment_brdf(float roughness, float n_v)
     uvec2 node = min(uvec2(at), uvec2(ENVIRONMENT_BRDF_EDGE - 2));
     vec2 t = at - vec2(node);
     uint index = node.y * uint(ENVIRONMENT_BRDF_EDGE) + node.x;
-    vec4 smoother = environment.brdf_nodes[index];
-    vec4 rougher = environment.brdf_nodes[index + uint(ENVIRONMENT_BRDF_EDGE)];
+    vec4 smoother = environment_floats(ENVIRONMENT_BRDF + index);
+    vec4 rougher = environment_floats(ENVIRONMENT_BRDF + index + uint(ENVIRONMENT_BRDF_EDGE));
     return mix(mix(smoother.xy, smoother.zw, t.x), mix(rougher.xy, rougher.zw, t.x), t.y);
 }
 
@@ -63,12 +71,11 @@ vec3 environment_specular(vec3 direction, float roughness)
     vec2 p = octahedral_encode(to_environment(direction)) * 0.5 + 0.5;
     float edge = float(textureSize(environment_levels, 0).x);
     p = clamp(p, 0.5 / edge, 1.0 - 0.5 / edge);
-    float level = roughness * (environment.level_count - 1.0);
+    float last = environment_floats(ENVIRONMENT_KIND).y - 1.0;
+    float level = roughness * last;
     float lower = floor(level);
     vec3 a = textureLod(environment_levels, vec3(p, lower), 0.0).rgb;
-    vec3 b = textureLod(environment_levels,
-                        vec3(p, min(lower + 1.0, environment.level_count - 1.0)), 0.0)
-                 .rgb;
+    vec3 b = textureLod(environment_levels, vec3(p, min(lower + 1.0, last)), 0.0).rgb;
     return mix(a, b, level - lower) * frame.environment_intensity;
 }
 

@@ -2,11 +2,8 @@
 // compute shader has 16 at most, and that which shades layers needs as many.
 #include "lib/frame.glsl"
 
-#ifndef FRAGMENTS_ACCESS
-#define FRAGMENTS_ACCESS
-#endif
-
-layout(std430, binding = BIND_FRAGMENTS) FRAGMENTS_ACCESS buffer fragment_storage
+#ifdef FRAGMENTS_STORED
+layout(std430, binding = BIND_FRAGMENTS) buffer fragment_storage
 {
     uint fragment_count;    // rasterised
     uint fragment_capacity; // size of the pool
@@ -19,6 +16,15 @@ layout(std430, binding = BIND_FRAGMENTS) FRAGMENTS_ACCESS buffer fragment_storag
     // (row * 65536 + column); fragments: the next one + 1, and the visibility id.
     uint fragment_words[];
 };
+#endif
+
+layout(binding = UNIT_FRAGMENTS) uniform usamplerBuffer fragment_texels;
+
+// A word of fragment_words, as earlier commands have left it.
+uint fragment_word(uint index)
+{
+    return texelFetch(fragment_texels, int(index + 8u)).x;
+}
 
 uint head_index(uvec2 pixel)
 {

@@ -3,11 +3,12 @@
 //   1: dielectric F0 and roughness; emission (shared exponent); thin; occlusion; shading model
 #include "lib/surface.glsl"
 
-layout(std430, binding = BIND_GBUFFER) buffer gbuffer_storage
+layout(std430, binding = BIND_GBUFFER) writeonly buffer gbuffer_storage
 {
     uvec4 gbuffer[];
 };
 
+layout(binding = UNIT_GBUFFER) uniform usamplerBuffer gbuffer_texels; // the same, to read
 layout(binding = UNIT_DEPTH) uniform sampler2D depth_texture;
 
 uint pixel_index(uvec2 pixel)
@@ -68,8 +69,8 @@ void gbuffer_store_background(uvec2 pixel)
 surface gbuffer_load(uvec2 pixel)
 {
     uint at = 2u * pixel_index(pixel);
-    uvec4 first = gbuffer[at];
-    uvec4 second = gbuffer[at + 1u];
+    uvec4 first = texelFetch(gbuffer_texels, int(at));
+    uvec4 second = texelFetch(gbuffer_texels, int(at + 1u));
     surface s;
     vec3 direction = ray_direction(vec2(pixel));
     float depth = texelFetch(depth_texture, ivec2(pixel), 0).r;

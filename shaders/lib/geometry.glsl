@@ -6,29 +6,32 @@
 #include "shared/instance_block.h"
 #include "shared/vertex.h"
 
-layout(std430, binding = BIND_INSTANCES) readonly buffer instance_storage
-{
-    instance_block instances[];
+layout(binding = UNIT_VERTICES) uniform usamplerBuffer vertices;   // VERTEX_TEXELS each
+layout(binding = UNIT_TRIANGLES) uniform usamplerBuffer triangles; // vertices of the corners
+
+// An instance without its transform.
+struct instance_words {
+    uint first_triangle;
+    uint material;
+    uint first_visibility_id;
+    uint flags;
 };
 
-layout(std430, binding = BIND_ID_BLOCKS) readonly buffer id_block_storage
+instance_words load_instance(uint number)
 {
-    uint id_block_instances[];
-};
+    uvec4 words = table_words(frame.first_instance + 5u * number + 4u);
+    return instance_words(words.x, words.y, words.z, words.w);
+}
 
-layout(std430, binding = BIND_VERTICES) readonly buffer vertex_storage
+mat4 load_transform(uint number)
 {
-    uint vertices[]; // VERTEX_WORDS each
-};
-
-layout(std430, binding = BIND_INDICES) readonly buffer index_storage
-{
-    uint indices[];
-};
+    return table_matrix(frame.first_instance + 5u * number);
+}
 
 struct triangle {
-    uint instance;
-    uvec3 words;     // first word of each vertex in `vertices`
+    instance_words instance;
+    uvec3 texels;    // first texel of each vertex
+    uvec3 normals;   // of the vertices, as they are packed
     mat3 linear;     // linear part of world_from_local
     vec3 corner;     // first corner minus the ray origin
     vec3 edges[2];   // from the first corner
@@ -36,29 +39,26 @@ struct triangle {
                      // weight
 };
 
-float fetch(uint word)
+vec4 vertex_floats(uint texel)
 {
-    return uintBitsToFloat(vertices[word]);
+    return uintBitsToFloat(texelFetch(vertices, int(texel)));
 }
 
-vec2 fetch2(uint word)
+// Texture coordinates of both sets, or of the first alone.
+#if SECOND_UV_SET
+vec4 vertex_uv(uint texel)
 {
-    return vec2(fetch(word), fetch(word + 1u));
+    return vec4(vertex_floats(texel + 1u).xy, vertex_floats(texel + 2u).xy);
 }
-
-vec3 fetch3(uint word)
+#else
+vec2 vertex_uv(uint texel)
 {
-    return vec3(fetch(word), fetch(word + 1u), fetch(word + 2u));
+    return vertex_floats(texel + 1u).xy;
 }
+#endif
 
-vec4 fetch4(uint word)
+vec3 unpack_direction(uint bits)
 {
-    return vec4(fetch3(word), fetch(word + 3u));
-}
-
-vec3 fetch_direction(uint word)
-{
-    uint bits = vertices[word];
     return bits == VERTEX_NO_DIRECTION ? vec3(0.0) : octahedral_decode(unpackSnorm2x16(bits));
 }
 
@@ -80,17 +80,22 @@ camera_ray pixel_camera_ray(vec2 pixel)
 triangle fetch_triangle(uint id, vec3 eye)
 {
     triangle t;
-    t.instance = id_block_instances[(id - 1u) >> ID_BLOCK_BITS];
-    uint first = instances[t.instance].first_index +
-                 3u * (id - 1u - instances[t.instance].first_visibility_id);
-    t.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
-    mat4 world_from_local = instances[t.instance].world_from_local;
+    uint block = (id - 1u) >> ID_BLOCK_BITS;
+    uint number = table_words(frame.first_id_block + (block >> 2))[block & 3u];
+    t.instance = load_instance(number);
+    uint at = t.instance.first_triangle + (id - 1u - t.instance.first_visibility_id);
+    t.texels = texelFetch(triangles, int(at)).xyz * VERTEX_TEXELS;
+    uvec4 first = texelFetch(vertices, int(t.texels.x));
+    uvec4 second = texelFetch(vertices, int(t.texels.y));
+    uvec4 third = texelFetch(vertices, int(t.texels.z));
+    t.normals = uvec3(first.w, second.w, third.w);
+    mat4 world_from_local = load_transform(number);
     t.linear = mat3(world_from_local);
     vec3 origin = world_from_local[3].xyz - eye;
-    vec3 local = fetch3(t.words.x);
+    vec3 local = uintBitsToFloat(first.xyz);
     t.corner = t.linear * local + origin;
-    t.edges[0] = t.linear * (fetch3(t.words.y) - local);
-    t.edges[1] = t.linear * (fetch3(t.words.z) - local);
+    t.edges[0] = t.linear * (uintBitsToFloat(second.xyz) - local);
+    t.edges[1] = t.linear * (uintBitsToFloat(third.xyz) - local);
     t.volumes[0] = cross(t.edges[1], t.edges[0]);
     t.volumes[1] = cross(t.corner, t.edges[1]);
     t.volumes[2] = cross(t.edges[0], t.corner);
@@ -108,17 +113,19 @@ vec3 plane_weights(triangle t, vec3 direction)
     return vec3(1.0 - b - c, b, c);
 }
 
-vec3 interpolate_direction(triangle t, uint word, vec3 w)
+vec3 interpolate_direction(uvec3 bits, vec3 w)
 {
-    return fetch_direction(t.words.x + word) * w.x + fetch_direction(t.words.y + word) * w.y +
-           fetch_direction(t.words.z + word) * w.z;
+    return unpack_direction(bits.x) * w.x + unpack_direction(bits.y) * w.y +
+           unpack_direction(bits.z) * w.z;
 }
 
-vec4 interpolate4(triangle t, uint word, vec3 w)
+#if VERTEX_COLORS
+vec4 interpolate_color(uvec3 texels, vec3 w)
 {
-    return fetch4(t.words.x + word) * w.x + fetch4(t.words.y + word) * w.y +
-           fetch4(t.words.z + word) * w.z;
+    return vertex_floats(texels.x + 3u) * w.x + vertex_floats(texels.y + 3u) * w.y +
+           vertex_floats(texels.z + 3u) * w.z;
 }
+#endif
 
 // How a transparent layer changes the light behind it.
 struct transparent_layer {
@@ -133,15 +140,18 @@ struct transparent_layer {
 #if TEXTURED
 vec3 mapped_normal(triangle t, vec3 tangent_space, vec3 weights, vec3 normal)
 {
-    vec3 tangent_local = interpolate_direction(t, VERTEX_TANGENT, weights);
+    uvec3 bits = uvec3(texelFetch(vertices, int(t.texels.x + 1u)).z,
+                       texelFetch(vertices, int(t.texels.y + 1u)).z,
+                       texelFetch(vertices, int(t.texels.z + 1u)).z);
+    vec3 tangent_local = interpolate_direction(bits, weights);
     vec3 tangent = t.linear * tangent_local;
-    bool reversed = (vertices[t.words.x + VERTEX_TANGENT] & 0x10000u) != 0u;
+    bool reversed = (bits.x & 0x10000u) != 0u;
     tangent = tangent - normal * dot(normal, tangent);
     float squared = dot(tangent, tangent);
     if (!(squared > 1e-20))
         return normal;
     tangent *= inversesqrt(squared);
-    float mirrored = (instances[t.instance].flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
+    float mirrored = (t.instance.flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     vec3 bitangent = cross(normal, tangent) * (reversed ? -mirrored : mirrored);
     return safe_normalize(
         tangent * tangent_space.x + bitangent * tangent_space.y + normal * tangent_space.z, normal);
@@ -168,13 +178,7 @@ texture_point find_texture_point(triangle t, camera_ray ray, vec3 weights)
     point.level_dither = dither_level(ray.pixel);
     vec3 weights_dx = plane_weights(t, ray.direction + ray.dx);
     vec3 weights_dy = plane_weights(t, ray.direction + ray.dy);
-#if SECOND_UV_SET
-    vec4 uv[3] = {fetch4(t.words.x + VERTEX_UV), fetch4(t.words.y + VERTEX_UV),
-                  fetch4(t.words.z + VERTEX_UV)};
-#else
-    vec2 uv[3] = {fetch2(t.words.x + VERTEX_UV), fetch2(t.words.y + VERTEX_UV),
-                  fetch2(t.words.z + VERTEX_UV)};
-#endif
+    UV_VECTOR uv[3] = {vertex_uv(t.texels.x), vertex_uv(t.texels.y), vertex_uv(t.texels.z)};
     point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
     point.dx = uv[0] * weights_dx.x + uv[1] * weights_dx.y + uv[2] * weights_dx.z - point.uv;
     point.dy = uv[0] * weights_dy.x + uv[1] * weights_dy.y + uv[2] * weights_dy.z - point.uv;
@@ -224,7 +228,7 @@ material_point find_material_point(triangle t, camera_ray ray, vec3 weights,
     material_point p;
     p.base = material.base_color;
 #if VERTEX_COLORS
-    p.base *= interpolate4(t, VERTEX_COLOR, weights);
+    p.base *= interpolate_color(t.texels, weights);
 #endif
     p.emission = material.emission;
     p.metallic = material.metallic;
@@ -246,15 +250,15 @@ surface load_surface(uint id, camera_ray ray, out transparent_layer through)
 {
     triangle t = fetch_triangle(id, ray.origin);
     vec3 weights = plane_weights(t, ray.direction);
-    material_block material = materials[instances[t.instance].material];
+    material_block material = load_material(t.instance.material);
 
     surface s;
     s.view = -normalize(ray.direction);
     s.position = ray.origin + t.corner + weights.y * t.edges[0] + weights.z * t.edges[1];
     vec3 face = -t.volumes[0];
-    float mirrored = (instances[t.instance].flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
+    float mirrored = (t.instance.flags & INSTANCE_MIRRORED) != 0u ? -1.0 : 1.0;
     s.geometric_normal = safe_normalize(face * mirrored, s.view);
-    vec3 local_normal = interpolate_direction(t, VERTEX_NORMAL, weights);
+    vec3 local_normal = interpolate_direction(t.normals, weights);
     // The cofactor matrix transforms normals like the inverse transpose, and exists for flat
     // scales, too.
     vec3 turned = cross(t.linear[1], t.linear[2]) * local_normal.x +

@@ -1,7 +1,6 @@
 // Closest hit against the BVH, shaded; the environment on a miss. LIT_HITS 1: hits are lit by each
 // light; 0: from the voxels around them.
-#define CONE_SMOOTH  0
-#define CELLS_ACCESS readonly
+#define CONE_SMOOTH 0
 #include "lib/geometry.glsl"
 #include "lib/lighting.glsl"
 #include "lib/environment.glsl"

@@ -1,33 +1,15 @@
 // Direct light from punctual lights (KHR_lights_punctual) and area lights.
 #include "lib/brdf.glsl"
 #include "lib/cone.glsl"
-#include "shared/area_light_block.h"
-#include "shared/light_block.h"
+#include "lib/light_table.glsl"
 // Last, since files are included once: what it includes is here already.
 #if SHADOWS
 #include "lib/shadow.glsl"
 #endif
 
-#if PUNCTUAL_LIGHTS
-layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
-{
-    light_block lights[];
-};
-
-#endif
-
-#if AREA_LIGHTS
-layout(std430, binding = BIND_AREA_LIGHTS) readonly buffer area_light_storage
-{
-    area_light_block area_lights[];
-};
-#endif
-
 #if LIGHT_TILES
-layout(std430, binding = BIND_LIGHT_MASKS) readonly buffer light_mask_storage
-{
-    uint light_masks[]; // frame.light_mask_words words per tile, one bit per light
-};
+// frame.light_mask_words words per tile, one bit per light
+layout(binding = UNIT_LIGHT_MASKS) uniform usamplerBuffer light_masks;
 #endif
 
 #if RAY_SHADOWS
@@ -215,7 +197,7 @@ vec3 area_unshadowed(surface s, area_light_block light)
         return vec3(0.0);
     vec3 corners[4];
     for (int i = 0; i < 4; i++)
-        corners[i] = light.corners[reversed ? 3 - i : i].xyz - s.position;
+        corners[i] = (reversed ? light.corners[3 - i].xyz : light.corners[i].xyz) - s.position;
     // A corner at the receiver has no direction; an emitter does not light itself.
     if (abs(side) < 1e-6 * sqrt(light.area_m2))
         return vec3(0.0);
@@ -262,20 +244,20 @@ vec3 direct_light(surface s, uvec2 pixel)
 #if PUNCTUAL_LIGHTS && LIGHT_TILES
     uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.tile_count.x + pixel.x / LIGHT_TILE_EDGE;
     for (uint word = 0u; word < frame.light_mask_words; word++) {
-        uint mask = light_masks[tile * frame.light_mask_words + word];
+        uint mask = texelFetch(light_masks, int(tile * frame.light_mask_words + word)).x;
         while (mask != 0u) {
             uint bit = uint(findLSB(mask));
             mask &= mask - 1u;
-            sum += punctual_light(s, lights[word * 32u + bit]);
+            sum += punctual_light(s, load_light(word * 32u + bit));
         }
     }
 #elif PUNCTUAL_LIGHTS
     for (uint i = 0u; i < frame.light_count; i++)
-        sum += punctual_light(s, lights[i]);
+        sum += punctual_light(s, load_light(i));
 #endif
 #if AREA_LIGHTS
     for (uint i = 0u; i < frame.area_light_count; i++)
-        sum += area_light(s, area_lights[i]);
+        sum += area_light(s, load_area_light(i));
 #endif
     return sum;
 }

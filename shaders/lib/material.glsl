@@ -2,14 +2,8 @@
 // DATA_CLASSES: number of texture arrays (one per size) of sRGB and of linear images;
 // TEXTURE_TRANSFORMS: whether any texture has a transform; SECOND_UV_SET: whether any texture uses
 // the second set of texture coordinates.
-#include "lib/frame.glsl"
-#include "shared/material_block.h"
+#include "lib/material_table.glsl"
 #include "shared/texture_block.h"
-
-layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
-{
-    material_block materials[];
-};
 
 // From the frame's quality, unless the shader overrides it.
 #ifndef TEXTURE_ANISOTROPY
@@ -19,11 +13,6 @@ layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
 #define TEXTURED (COLOR_CLASSES + DATA_CLASSES > 0)
 
 #if TEXTURED
-layout(std430, binding = BIND_TEXTURES) readonly buffer texture_storage
-{
-    texture_block textures[];
-};
-
 #if COLOR_CLASSES > 0
 layout(binding = UNIT_COLOR_CLASSES) uniform sampler2DArray color_classes[COLOR_CLASSES];
 #endif
@@ -146,7 +135,8 @@ void set_filter(inout footprint f, vec2 dx, vec2 dy, float level_dither, float e
 
 footprint find_footprint(uint texture_number, texture_point point)
 {
-    uint bits = textures[texture_number].sampling;
+    uint record = frame.first_texture + 3u * texture_number;
+    uint bits = table_words(record + 2u).x;
     vec2 at = point.uv.xy;
     vec2 dx = point.dx.xy;
     vec2 dy = point.dy.xy;
@@ -157,8 +147,8 @@ footprint find_footprint(uint texture_number, texture_point point)
     dy = second ? point.dy.zw : dy;
 #endif
 #if TEXTURE_TRANSFORMS
-    vec3 row_u = textures[texture_number].uv_row_u;
-    vec3 row_v = textures[texture_number].uv_row_v;
+    vec3 row_u = table_floats(record).xyz;
+    vec3 row_v = table_floats(record + 1u).xyz;
     at = vec2(dot(row_u, vec3(at, 1.0)), dot(row_v, vec3(at, 1.0)));
     dx = vec2(dot(row_u.xy, dx), dot(row_v.xy, dx));
     dy = vec2(dot(row_u.xy, dy), dot(row_v.xy, dy));

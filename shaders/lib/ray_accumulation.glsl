@@ -2,10 +2,18 @@
 #include "lib/surface.glsl"
 #include "shared/ray_accumulation.h"
 
-layout(std430, binding = BIND_INDIRECT) buffer indirect_storage
+layout(std430, binding = BIND_INDIRECT) writeonly buffer indirect_storage
 {
     vec4 accumulated[];
 };
+
+layout(binding = UNIT_ACCUMULATION) uniform samplerBuffer accumulated_texels;
+
+// What earlier passes and frames have written.
+vec4 former_sum(uint index)
+{
+    return texelFetch(accumulated_texels, int(index));
+}
 
 uvec2 accumulation_size()
 {

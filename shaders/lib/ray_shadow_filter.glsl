@@ -16,7 +16,7 @@ float same_shadow(vec4 a, vec4 b)
 // since sums are stored.
 vec3 filtered_visibility(surface s, uvec2 pixel)
 {
-    vec4 own = accumulated[visibility_index(pixel)];
+    vec4 own = former_sum(visibility_index(pixel));
     vec4 sum = own;
     float pixel_m = accumulation_spacing_m(s) / float(GATHER_STEP);
     for (int y = -2; y <= 2; y++)
@@ -25,7 +25,7 @@ vec3 filtered_visibility(surface s, uvec2 pixel)
             if ((x == 0 && y == 0) || any(lessThan(other, ivec2(0))) ||
                 any(greaterThanEqual(other, ivec2(frame.render_size))))
                 continue;
-            vec4 value = accumulated[visibility_index(uvec2(other))];
+            vec4 value = former_sum(visibility_index(uvec2(other)));
             if (value.a == 0.0)
                 continue;
             float w = likeness(s, gbuffer_load(uvec2(other)), pixel_m) * window_weight(x, y);

@@ -3,10 +3,12 @@
 #include "lib/frame.glsl"
 #include "shared/shadow_view_block.h"
 
-layout(std430, binding = BIND_SHADOW_VIEWS) readonly buffer shadow_view_storage
+layout(binding = UNIT_SHADOW_VIEWS) uniform usamplerBuffer shadow_views; // of shadow_view_block
+
+vec4 shadow_view_floats(uint texel)
 {
-    shadow_view_block shadow_views[];
-};
+    return uintBitsToFloat(texelFetch(shadow_views, int(texel)));
+}
 
 // Layers of the scene's lights, then of the views' cascades.
 layout(binding = UNIT_SHADOW_MAP) uniform sampler2DArrayShadow shadow_map;
@@ -61,10 +63,13 @@ struct shadow_lookup {
 // Position in the view of a spot or the sun.
 shadow_lookup project_to_shadow(uint view_number, vec3 position, vec3 normal, vec3 to_light)
 {
-    mat4 clip_from_world = shadow_views[view_number].clip_from_world;
+    uint record = 5u * view_number;
+    mat4 clip_from_world = mat4(shadow_view_floats(record), shadow_view_floats(record + 1u),
+                                shadow_view_floats(record + 2u), shadow_view_floats(record + 3u));
+    uvec4 words = texelFetch(shadow_views, int(record + 4u));
     vec4 clip = clip_from_world * vec4(position, 1.0);
-    bool perspective = shadow_views[view_number].perspective != 0u;
-    float size = shadow_views[view_number].texel_m * (perspective ? max(clip.w, 0.0) : 1.0);
+    bool perspective = words.y != 0u;
+    float size = uintBitsToFloat(words.x) * (perspective ? max(clip.w, 0.0) : 1.0);
     vec4 lifted =
         clip + clip_from_world * vec4(normal * (size * offset_texels(normal, to_light)), 0.0);
     const vec3 uv_from_ndc = vec3(0.5, -0.5, 1.0);

@@ -1,49 +1,82 @@
-// The index from voxels to cells, and the cells. CELLS_ACCESS: readonly in passes that only read.
+// The index from voxels to cells, the cells and their face records. Reads see what earlier
+// dispatches have written. FACES_STORED, CELLS_STORED: defined by shaders that write face records,
+// or all.
 #include "lib/voxel.glsl"
 
-#ifndef CELLS_ACCESS
-#define CELLS_ACCESS
-#endif
+layout(binding = UNIT_VOXEL_INDEX) uniform usamplerBuffer index_texels;
+layout(binding = UNIT_CELLS) uniform usamplerBuffer cell_texels; // CELL_WORDS each
+layout(binding = UNIT_FACES) uniform usamplerBuffer face_texels; // voxels.face_record_words words
 
-layout(std430, binding = BIND_VOXEL_INDEX) CELLS_ACCESS buffer voxel_index_storage
+#ifdef CELLS_STORED
+#define FACES_STORED
+layout(std430, binding = BIND_VOXEL_INDEX) writeonly buffer voxel_index_storage
 {
     uint voxel_index[];
 };
 
-layout(std430, binding = BIND_CELLS) CELLS_ACCESS buffer cell_storage
+layout(std430, binding = BIND_CELLS) writeonly buffer cell_storage
 {
-    uint cells[]; // CELL_WORDS each
+    uint cells[];
 };
+#endif
 
-layout(std430, binding = BIND_FACES) CELLS_ACCESS buffer face_storage
+#ifdef FACES_STORED
+layout(std430, binding = BIND_FACES) writeonly buffer face_storage
 {
-    uint faces[]; // voxels.face_record_words words each
+    uint faces[];
 };
+#endif
+
+uint index_word(uint index)
+{
+    return texelFetch(index_texels, int(index)).x;
+}
+
+uint cell_word(uint cell, uint word)
+{
+    return texelFetch(cell_texels, int(cell * CELL_WORDS + word)).x;
+}
+
+// Four words of a face record, which begins at word `words`.
+uvec4 face_words(uint words, uint first)
+{
+    return texelFetch(face_texels, int((words + first) >> 2));
+}
+
+uint face_word(uint words, uint word)
+{
+    return face_words(words, word)[word & 3u];
+}
 
 // First word of a cell's face record; VOXEL_NONE if it has none.
 uint cell_face(uint cell, uint face)
 {
-    uint record = cells[cell * CELL_WORDS + CELL_FACES + face];
+    uint record = cell_word(cell, CELL_FACES + face);
     return record == 0u ? VOXEL_NONE : (record - 1u) * voxels.face_record_words;
 }
 
 // Irradiance / pi / scale and ambient visibility.
 vec4 face_light(uint words)
 {
-    return vec4(unpackHalf2x16(faces[words + FACE_LIGHT]),
-                unpackHalf2x16(faces[words + FACE_LIGHT + 1u]));
+    uvec2 light = face_words(words, FACE_LIGHT).xy;
+    return vec4(unpackHalf2x16(light.x), unpackHalf2x16(light.y));
 }
 
-// The same as pixels read it: smoothed over neighbours, which trace different directions.
-vec4 face_shown_light(uint words)
+// Normal, smoothed irradiance (two words) and state.
+uvec4 face_shown(uint words)
 {
-    return vec4(unpackHalf2x16(faces[words + FACE_SHOWN]),
-                unpackHalf2x16(faces[words + FACE_SHOWN + 1u]));
+    return face_words(words, FACE_NORMAL);
+}
+
+// The irradiance as pixels read it: smoothed over neighbours, which trace different directions.
+vec4 face_shown_light(uvec4 shown)
+{
+    return vec4(unpackHalf2x16(shown.y), unpackHalf2x16(shown.z));
 }
 
 // The cell of a voxel of the level, or VOXEL_NONE.
 uint find_cell(uint level, ivec3 voxel)
 {
-    uint entry = voxel_index[voxels.levels[level].first_index + voxel_slot(level, voxel)];
+    uint entry = index_word(voxels.levels[level].first_index + voxel_slot(level, voxel));
     return entry - 1u; // empty: 0 - 1 = VOXEL_NONE
 }

@@ -1,12 +1,22 @@
 // Work lists of voxelization: regions to refill, and batches of triangles.
-#include "lib/voxel.glsl"
+#include "lib/voxel_cells.glsl"
 #include "shared/voxel_work.h"
 
-layout(std430, binding = BIND_VOXEL_WORK) readonly buffer voxel_work_storage
+// VOXEL_MAX_REGIONS of voxel_region, and then voxel_batch.
+layout(binding = UNIT_VOXEL_WORK) uniform usamplerBuffer work_texels;
+
+voxel_region load_region(uint number)
 {
-    voxel_region regions[VOXEL_MAX_REGIONS];
-    voxel_batch batches[];
-};
+    uvec4 low = texelFetch(work_texels, int(2u * number));
+    uvec4 size = texelFetch(work_texels, int(2u * number + 1u));
+    return voxel_region(ivec3(low.xyz), low.w, ivec3(size.xyz), size.w);
+}
+
+voxel_batch load_batch(uint number)
+{
+    uvec4 words = texelFetch(work_texels, int(2u * uint(VOXEL_MAX_REGIONS) + number));
+    return voxel_batch(words.x, words.y, words.z, words.w);
+}
 
 layout(std430, binding = BIND_VOXEL_COUNTERS) coherent buffer voxel_counter_storage
 {
@@ -31,14 +41,16 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
     if (number >= voxels.region_voxel_count)
         return false;
     uint i = 0u;
-    while (i + 1u < voxels.region_count && regions[i + 1u].first_voxel <= number)
+    while (i + 1u < voxels.region_count &&
+           texelFetch(work_texels, int(2u * i + 3u)).w <= number) // its first voxel
         i++;
-    uvec3 size = uvec3(regions[i].size);
-    uint at = number - regions[i].first_voxel;
-    level = regions[i].level;
+    voxel_region region = load_region(i);
+    uvec3 size = uvec3(region.size);
+    uint at = number - region.first_voxel;
+    level = region.level;
     uint row = quotient(at, size.x);
     uint layer = quotient(row, size.y);
-    voxel = regions[i].low + ivec3(at - row * size.x, row - layer * size.y, layer);
+    voxel = region.low + ivec3(at - row * size.x, row - layer * size.y, layer);
     return true;
 }
 
@@ -53,7 +65,7 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
         uint level_;                                                                               \
         ivec3 voxel_;                                                                              \
         if (region_voxel((run)*REGION_RUN + i_, level_, voxel_) &&                                 \
-            voxel_index[voxels.levels[level_].first_index + voxel_slot(level_, voxel_)] != 0u)     \
+            index_word(voxels.levels[level_].first_index + voxel_slot(level_, voxel_)) != 0u)      \
             out_bits |= 1u << i_;                                                                  \
     }
 

@@ -20,7 +20,7 @@ void main()
 #elif ADDED_TO == ADDED_TO_NOTHING
     vec3 sum = vec3(0.0);
 #else
-    vec3 sum = radiance[pixel_index(pixel)].rgb;
+    vec3 sum = former_radiance(pixel_index(pixel));
 #endif
     if (s.shading < SHADE_UNLIT) {
 #if RAY_SHADOWS

@@ -8,6 +8,6 @@ void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (all(lessThan(pixel, frame.render_size)))
-        radiance[pixel_index(pixel)] =
-            vec4(unpack_emission(gbuffer[2u * pixel_index(pixel) + 1u]), 1.0);
+        radiance[pixel_index(pixel)] = vec4(
+            unpack_emission(texelFetch(gbuffer_texels, int(2u * pixel_index(pixel) + 1u))), 1.0);
 }

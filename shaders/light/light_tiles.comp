@@ -2,17 +2,11 @@
 // per tile and no dependence on timing. In: depth, lights. Out: masks. Tests each light's sphere
 // against the tile's frustum between its nearest and farthest depth (Olsson and Assarsson 2011,
 // "Tiled Shading").
-#include "lib/frame.glsl"
-#include "shared/light_block.h"
+#include "lib/light_table.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
 layout(binding = UNIT_DEPTH) uniform sampler2D depth_texture;
-
-layout(std430, binding = BIND_LIGHTS) readonly buffer light_storage
-{
-    light_block lights[];
-};
 
 layout(std430, binding = BIND_LIGHT_MASKS) writeonly buffer light_mask_storage
 {
@@ -92,7 +86,7 @@ void main()
             uint index = word * 32u + bit;
             if (index >= frame.light_count)
                 break;
-            light_block light = lights[index];
+            light_block light = load_light(index);
             bool unlimited = light.type == LIGHT_DIRECTIONAL || light.range_m <= 0.0;
             if (unlimited || sphere_in_tile(light.position - frame.eye, light.range_m, planes,
                                             near_distance, far_distance))

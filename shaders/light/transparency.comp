@@ -5,8 +5,6 @@
 // A layer covers `alpha` of the pixel. Its diffuse part transmits the fraction `transmission`
 // unscattered, tinted by base colour (KHR_materials_transmission, thin-walled) and absorbed along
 // its thickness (KHR_materials_volume); its specular part reflects.
-#define CELLS_ACCESS     readonly
-#define FRAGMENTS_ACCESS readonly
 #include "lib/geometry.glsl"
 #include "lib/lighting.glsl"
 #include "lib/cache_lookup.glsl"
@@ -24,11 +22,11 @@ uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
     float distances[MAX_BLENDED_LAYERS];
     uint count = 0u;
     vec3 direction = ray_direction(vec2(pixel));
-    uint slot = fragment_words[head_index(pixel)];
+    uint slot = fragment_word(head_index(pixel));
     while (slot != 0u) {
         uint base = fragment_index(slot - 1u);
-        uint id = fragment_words[base + 1u];
-        slot = fragment_words[base];
+        uint id = fragment_word(base + 1u);
+        slot = fragment_word(base);
         triangle t = fetch_triangle(id, frame.eye);
         vec3 w = plane_weights(t, direction);
         float along = dot(frame.forward, t.corner + w.y * t.edges[0] + w.z * t.edges[1]);
@@ -115,7 +113,7 @@ vec3 refracted_light(surface s, transparent_layer through)
 
 void main()
 {
-    uint tile = fragment_words[tile_index(gl_WorkGroupID.x)];
+    uint tile = fragment_word(tile_index(gl_WorkGroupID.x));
     uvec2 pixel = uvec2(tile & 0xffffu, tile >> 16) * GROUP_EDGE + gl_LocalInvocationID.xy;
     if (any(greaterThanEqual(pixel, frame.render_size)))
         return;
@@ -124,7 +122,7 @@ void main()
     if (count == 0u)
         return;
     uint at = pixel.y * frame.render_size.x + pixel.x;
-    vec3 sum = radiance[at].rgb;
+    vec3 sum = former_radiance(at);
     for (uint i = 0u; i < count; i++) {
         transparent_layer through;
         surface s = load_surface(layers[i], pixel_camera_ray(vec2(pixel)), through);

@@ -1,5 +1,6 @@
 // Lists the tiles of GROUP_EDGE^2 pixels with transparent fragments, for indirect dispatch. In:
 // heads of the pixels' lists. Out: dispatch arguments and tile numbers, in any order.
+#define FRAGMENTS_STORED
 #include "lib/fragments.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
@@ -15,7 +16,7 @@ void main()
     uint any_head = 0u;
     for (uint y = tile.y * GROUP_EDGE; y < last.y; y++)
         for (uint x = tile.x * GROUP_EDGE; x < last.x; x++)
-            any_head |= fragment_words[head_index(uvec2(x, y))];
+            any_head |= fragment_word(head_index(uvec2(x, y)));
     if (any_head != 0u)
         fragment_words[tile_index(atomicAdd(tile_count, 1u))] = tile.y * 65536u + tile.x;
 }

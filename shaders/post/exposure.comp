@@ -27,7 +27,7 @@ void main()
     // Samples one of each 2 x 2 pixels: plenty for a mean.
     uvec2 pixel = gl_GlobalInvocationID.xy * 2u;
     if (all(lessThan(pixel, frame.render_size))) {
-        float value = luminance(radiance[pixel.y * frame.render_size.x + pixel.x].rgb);
+        float value = luminance(former_radiance(pixel.y * frame.render_size.x + pixel.x));
         if (value > 0.0 && !isinf(value)) {
             float bin = (log2(value) - LOWEST_STOP) * BINS_PER_STOP;
             atomicAdd(bins[uint(clamp(bin, 0.0, float(HISTOGRAM_BINS - 1)))], 1u);

@@ -14,10 +14,7 @@ layout(std430, binding = BIND_OUTPUT) writeonly buffer output_storage
     uint words[];
 };
 
-layout(std430, binding = BIND_EXPOSURE) readonly buffer exposure_storage
-{
-    float automatic_exposure;
-};
+layout(binding = UNIT_EXPOSURE) uniform usamplerBuffer exposure_words; // the first is the scale
 
 vec3 radiance_at(uvec2 shown)
 {
@@ -25,17 +22,17 @@ vec3 radiance_at(uvec2 shown)
     return vec3(0.5);
 #endif
     if (frame.render_size == frame.output_size)
-        return radiance[shown.y * frame.render_size.x + shown.x].rgb;
+        return former_radiance(shown.y * frame.render_size.x + shown.x);
     vec2 size = vec2(frame.render_size);
     vec2 at =
         clamp((vec2(shown) + 0.5) * size / vec2(frame.output_size) - 0.5, vec2(0.0), size - 1.0);
     uvec2 low = uvec2(at);
     uvec2 high = min(low + 1u, frame.render_size - 1u);
     vec2 part = at - vec2(low);
-    vec3 top = mix(radiance[low.y * frame.render_size.x + low.x].rgb,
-                   radiance[low.y * frame.render_size.x + high.x].rgb, part.x);
-    vec3 bottom = mix(radiance[high.y * frame.render_size.x + low.x].rgb,
-                      radiance[high.y * frame.render_size.x + high.x].rgb, part.x);
+    vec3 top = mix(former_radiance(low.y * frame.render_size.x + low.x),
+                   former_radiance(low.y * frame.render_size.x + high.x), part.x);
+    vec3 bottom = mix(former_radiance(high.y * frame.render_size.x + low.x),
+                      former_radiance(high.y * frame.render_size.x + high.x), part.x);
     return mix(top, bottom, part.y);
 }
 
@@ -45,8 +42,8 @@ vec3 displayed(uvec2 shown)
 #if DISPLAY_READY
     return clamp(color, 0.0, 1.0);
 #else
-    float scale = frame.exposure_scale > 0.0 ? frame.exposure_scale
-                                             : automatic_exposure * frame.exposure_bias;
+    float automatic = uintBitsToFloat(texelFetch(exposure_words, 0).x) * frame.exposure_bias;
+    float scale = frame.exposure_scale > 0.0 ? frame.exposure_scale : automatic;
     return transfer(tonemap(max(color, 0.0) * scale));
 #endif
 }

@@ -2,12 +2,10 @@
 #ifndef VOXCAST_SHADERS_SHARED_BVH_H
 #define VOXCAST_SHADERS_SHARED_BVH_H
 
-// BVH for rays: BVH_NODE_TEXELS texels of 4 words per node and BVH_TRIANGLE_TEXELS per triangle, in
-// rows of 2^BVH_ROW_BITS texels. A node stores for each of two children: lower corner and child,
-// upper corner. A child is a node, or BVH_LEAF | first triangle << BVH_COUNT_BITS | triangle count.
-// A triangle stores: first corner and visibility id; edge from there and mean opacity; the other
-// edge and flags.
-#define BVH_ROW_BITS        12
+// BVH for rays: BVH_NODE_TEXELS texels of 4 words per node and BVH_TRIANGLE_TEXELS per triangle. A
+// node stores for each of two children: lower corner and child, upper corner. A child is a node, or
+// BVH_LEAF | first triangle << BVH_COUNT_BITS | triangle count. A triangle stores: first corner and
+// visibility id; edge from there and mean opacity; the other edge and flags.
 #define BVH_NODE_TEXELS     4
 #define BVH_TRIANGLE_TEXELS 3
 #define BVH_LEAF            0x80000000u

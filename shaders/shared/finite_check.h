@@ -24,7 +24,7 @@ struct finite_check_masks {
     uint floats;
     uint low_halves;
     uint high_halves;
-    uint unused;
+    uint first_word; // of the buffer
 };
 
 struct finite_check_result {

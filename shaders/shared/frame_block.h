@@ -56,13 +56,21 @@ struct frame_block {
     float environment_rotation_rad; // about +Y
     float texture_max_anisotropy;   // maximum samples per look-up
     float texture_dither_levels;    // 1: samplers read one mip level, so dither it
-    float unused_0;
-    float unused_1;
+    uint first_instance;            // texels of the scene's tables
+    uint first_id_block;
+    uint first_material;
+    uint first_texture;
+    uint first_light;
+    uint first_area_light;
+    uint environment_texel;
+    uint unused_0;
+    uint unused_1;
+    uint unused_2;
     BLOCK_STRUCT(cascade_block) cascades[MAX_CASCADES]; // of the view, smallest first
 };
 
 #ifdef __STDC__
-BLOCK_SIZE(frame_block, 17 + 2 * MAX_CASCADES);
+BLOCK_SIZE(frame_block, 19 + 2 * MAX_CASCADES);
 #endif
 
 #endif

@@ -9,7 +9,7 @@
 
 struct instance_block {
     mat4 world_from_local;
-    uint first_index;
+    uint first_triangle;
     uint material;
     uint first_visibility_id;
     uint flags;

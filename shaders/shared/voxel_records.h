@@ -11,7 +11,7 @@
 
 // A cell is an occupied voxel. Word 0: slot in its level | level << 28, or VOXEL_NONE; word 1:
 // first surfel; then per face 1 + face record, or 0 without a surface.
-#define CELL_WORDS     10u
+#define CELL_WORDS     8u
 #define CELL_SURFEL    1u
 #define CELL_FACES     2u
 #define CELL_LEVEL_BIT 28
@@ -20,23 +20,24 @@
 // A face record caches the irradiance of a voxel face that has a surface. After these words comes
 // one per cone: where it hits, how much it transmits and its diameter there, as add_cone() of
 // shaders/lib/cone_hemisphere.glsl packs them. While geometry is unchanged, updating a cone costs
-// one look-up.
-#define FACE_WORDS              12u // without the cones
-#define FACE_NORMAL             0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: surface removed
-#define FACE_SUB_VOXEL_POSITION 1u  // mean position in the voxel, 3 x 10 bits; FACE_THIN
+// one look-up. Records are whole texels of four words; words that are read together share one.
+#define FACE_WORDS  12u // without the cones
+#define FACE_NORMAL 0u  // mean, octahedral, 2 x 16 bits; VOXEL_NONE: surface removed
+#define FACE_SHOWN  1u  // two words: smoothed irradiance, as FACE_LIGHT
+#define FACE_STATE  3u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
 #define FACE_LIGHT                                                                                 \
-    2u // two words: irradiance / pi / scale as 3 halves, ambient visibility as a half
-#define FACE_STATE      4u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
-#define FACE_REQUEST    5u  // frame of the newest request
-#define FACE_DIRECT     6u  // two words: emitted and directly lit radiance / scale, optical depth
-#define FACE_ALBEDO     8u  // reflectance, 3 x 10 bits
-#define FACE_CELL       9u  // cell * 8 + face
-#define FACE_SHOWN      10u // two words: smoothed irradiance, as FACE_LIGHT
-#define FACE_VALID      0x400000u   // FACE_LIGHT is valid
-#define FACE_MARCHED    0x800000u   // the cones' hits are valid; epoch: for which geometry
-#define FACE_THIN       0x40000000u // zero-thickness surface: its back is in this voxel, too
-#define FACE_CHANGE_BIT 16
-#define FACE_EPOCH_BIT  24
+    4u // two words: irradiance / pi / scale as 3 halves, ambient visibility as a half
+#define FACE_SUB_VOXEL_POSITION  6u // mean position in the voxel, 3 x 10 bits; FACE_THIN
+#define FACE_REQUEST             7u // frame of the newest request
+#define FACE_DIRECT              8u // two words: emitted and directly lit radiance / scale, optical depth
+#define FACE_ALBEDO              10u // reflectance, 3 x 10 bits
+#define FACE_CELL                11u // cell * 8 + face
+#define FACE_RECORD_WORDS(cones) ((FACE_WORDS + (cones) + 3u) & ~3u)
+#define FACE_VALID               0x400000u   // FACE_LIGHT is valid
+#define FACE_MARCHED             0x800000u   // the cones' hits are valid; epoch: for which geometry
+#define FACE_THIN                0x40000000u // zero-thickness surface: its back is in this voxel, too
+#define FACE_CHANGE_BIT          16
+#define FACE_EPOCH_BIT           24
 
 // A surfel sums what one surface has in a voxel, for triangles of the same dominant axis and side
 // (0 to 5, as faces). Integer sums do not depend on the triangles' order.

@@ -14,7 +14,7 @@ layout(location = 2) in float fragment_alpha;
 
 void test_alpha()
 {
-    material_block material = materials[fragment_numbers.y];
+    material_block material = load_material(fragment_numbers.y);
     float alpha = material.base_color.a * fragment_alpha;
 #if COLOR_CLASSES > 0
     texture_point point = texture_point(UV_VECTOR(fragment_uv), UV_VECTOR(dFdx(fragment_uv)),
@@ -28,6 +28,7 @@ void test_alpha()
 #endif
 
 #if LIST
+#define FRAGMENTS_STORED
 #include "lib/fragments.glsl"
 
 layout(early_fragment_tests) in;

@@ -1,7 +1,7 @@
 // Allocates cells for voxels that voxelization has given surfels. In: regions, index. Out: index,
 // cells.
+#define CELLS_STORED
 #include "lib/voxel_work.glsl"
-#include "lib/voxel_cells.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
@@ -24,7 +24,7 @@ void make_cell(uint number)
     region_voxel(number, level, voxel);
     uint slot = voxel_slot(level, voxel);
     uint at = voxels.levels[level].first_index + slot;
-    uint entry = voxel_index[at];
+    uint entry = index_word(at);
     if ((entry & VOXEL_TAG_SURFEL) == 0u)
         return;
     uint cell = allocate_cell();

@@ -1,15 +1,12 @@
 // Clears regions: frees their cells and surfels, and blackens their texels. In: regions. Out:
 // index, cells, radiance texture, free lists.
+#define CELLS_STORED
 #include "lib/voxel_work.glsl"
-#include "lib/voxel_cells.glsl"
 #include "lib/voxel_texture.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
-layout(std430, binding = BIND_SURFELS) readonly buffer surfel_storage
-{
-    uint surfels[];
-};
+layout(binding = UNIT_SURFELS) uniform usamplerBuffer surfels;
 
 // Clears mip voxels whose last occupied voxel was removed: filtering only visits occupied ones.
 void clear_mips(uint level, ivec3 voxel)
@@ -29,14 +26,14 @@ void clear_voxel(uint number)
     ivec3 voxel;
     region_voxel(number, level, voxel);
     uint slot = voxel_slot(level, voxel);
-    uint cell = voxel_index[voxels.levels[level].first_index + slot] - 1u;
-    uint surfel = cells[cell * CELL_WORDS + CELL_SURFEL];
+    uint cell = index_word(voxels.levels[level].first_index + slot) - 1u;
+    uint surfel = cell_word(cell, CELL_SURFEL);
     while (surfel != VOXEL_NONE) {
         free_words[voxels.cell_capacity + atomicAdd(counters[COUNTER_FREE_SURFELS], 1u)] = surfel;
-        surfel = surfels[surfel * SURFEL_WORDS + SURFEL_NEXT];
+        surfel = texelFetch(surfels, int(surfel * SURFEL_WORDS + SURFEL_NEXT)).x;
     }
     for (uint face = 0u; face < VOXEL_FACES; face++) {
-        uint record = cells[cell * CELL_WORDS + CELL_FACES + face];
+        uint record = cell_word(cell, CELL_FACES + face);
         if (record != 0u)
             free_words[voxels.cell_capacity + 2u * voxels.surfel_capacity +
                        atomicAdd(counters[COUNTER_FREE_FACES], 1u)] = record - 1u;

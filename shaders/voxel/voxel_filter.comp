@@ -10,10 +10,7 @@ layout(local_size_x = LINEAR_GROUP) in;
 
 layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
 
-layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
-{
-    uint list_words[];
-};
+layout(binding = UNIT_VOXEL_LISTS) uniform usamplerBuffer list_texels;
 
 #define LEVEL voxels.first_level
 #define FINER (LEVEL - 1u)
@@ -73,7 +70,7 @@ vec4 filtered_mean(ivec3 corner)
 // visible.
 void inherit_irradiance(uint slot, ivec3 corner)
 {
-    uint cell = voxel_index[voxels.levels[LEVEL].first_index + slot] - 1u;
+    uint cell = index_word(voxels.levels[LEVEL].first_index + slot) - 1u;
     if (cell == VOXEL_NONE)
         return;
     for (uint face = 0u; face < VOXEL_FACES; face++) {
@@ -83,22 +80,27 @@ void inherit_irradiance(uint slot, ivec3 corner)
         for (int i = 0; i < 8; i++) {
             uint child = find_cell(FINER, corner + ivec3(i & 1, (i >> 1) & 1, i >> 2));
             uint from = child == VOXEL_NONE ? VOXEL_NONE : cell_face(child, face);
-            if (from == VOXEL_NONE || faces[from + FACE_NORMAL] == VOXEL_NONE ||
-                (faces[from + FACE_STATE] & FACE_VALID) == 0u)
+            if (from == VOXEL_NONE)
+                continue;
+            uvec4 shown = face_shown(from);
+            if (shown.x == VOXEL_NONE || (shown.w & FACE_VALID) == 0u)
                 continue;
             like = from;
             sum += face_light(from);
             count += 1.0;
         }
-        uint to = like == VOXEL_NONE ? VOXEL_NONE : make_face(cell, LEVEL, corner >> 1, face);
+        vec3 former;
+        uint to =
+            like == VOXEL_NONE ? VOXEL_NONE : make_face(cell, LEVEL, corner >> 1, face, former);
         if (to == VOXEL_NONE)
             continue;
         sum /= count;
-        faces[to + FACE_NORMAL] = faces[like + FACE_NORMAL];
-        faces[to + FACE_LIGHT] = packHalf2x16(sum.xy);
-        faces[to + FACE_LIGHT + 1u] = packHalf2x16(sum.zw);
-        faces[to + FACE_SHOWN] = faces[to + FACE_LIGHT];
-        faces[to + FACE_SHOWN + 1u] = faces[to + FACE_LIGHT + 1u];
+        uvec2 halves = uvec2(packHalf2x16(sum.xy), packHalf2x16(sum.zw));
+        faces[to + FACE_NORMAL] = face_word(like, FACE_NORMAL);
+        faces[to + FACE_LIGHT] = halves.x;
+        faces[to + FACE_LIGHT + 1u] = halves.y;
+        faces[to + FACE_SHOWN] = halves.x;
+        faces[to + FACE_SHOWN + 1u] = halves.y;
         faces[to + FACE_STATE] = FACE_VALID;
     }
 }
@@ -109,7 +111,7 @@ void main()
     uint number = gl_GlobalInvocationID.x;
     if (number >= counters[COUNTER_LISTS + LEVEL * COUNTER_LIST_WORDS + 3u])
         return;
-    uint slot = list_words[LEVEL * voxels.list_capacity + number];
+    uint slot = texelFetch(list_texels, int(LEVEL * voxels.list_capacity + number)).x;
     ivec3 corner = slot_voxel(LEVEL, slot) * 2;
     ivec3 address = slot_address(LEVEL, slot);
 #if VOXEL_DIRECTIONS == 1

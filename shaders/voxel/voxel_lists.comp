@@ -4,7 +4,6 @@
 // LISTS_ARGUMENTS: turns the lists' lengths into arguments of indirect dispatches.
 // LISTS_TILE_ARGUMENTS: likewise for the tiles of large triangles.
 #include "lib/voxel_work.glsl"
-#include "lib/voxel_cells.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
@@ -90,7 +89,7 @@ void main()
     uint lit = 0u, filtered = 0u, of_base = 0u; // a bit per cell
     for (uint cell = first; cell < end; cell++) {
         uint bit = 1u << (cell - first);
-        uint word = cells[cell * CELL_WORDS];
+        uint word = cell_word(cell, 0u);
         uint list = list_of(word);
         lit |= list == LIST_LIT ? bit : 0u;
         filtered |= list != LIST_LIT && list != VOXEL_NONE ? bit : 0u;
@@ -106,11 +105,11 @@ void main()
     for (; lit != 0u; lit &= lit - 1u)
         list_words[LIST_LIT * voxels.list_capacity + at++] = first + uint(findLSB(lit));
     for (; filtered != 0u; filtered &= filtered - 1u) {
-        uint word = cells[(first + uint(findLSB(filtered))) * CELL_WORDS];
+        uint word = cell_word(first + uint(findLSB(filtered)), 0u);
         append(word >> CELL_LEVEL_BIT, word & CELL_SLOT_MASK);
     }
     for (; of_base != 0u; of_base &= of_base - 1u)
-        append_mips(cells[(first + uint(findLSB(of_base))) * CELL_WORDS] & CELL_SLOT_MASK);
+        append_mips(cell_word(first + uint(findLSB(of_base)), 0u) & CELL_SLOT_MASK);
 }
 #elif STAGE == LISTS_TILE_ARGUMENTS
 void main()

@@ -10,29 +10,16 @@
 #define SHADOW_TAPS 2u
 #define VIEWLESS    1
 #include "lib/lighting.glsl"
-#include "shared/material_block.h"
+#include "lib/material_table.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
 
-layout(std430, binding = BIND_SURFELS) readonly buffer surfel_storage
-{
-    uint surfels[];
-};
+layout(binding = UNIT_SURFELS) uniform usamplerBuffer surfels;
 
-layout(std430, binding = BIND_VOXEL_LISTS) readonly buffer voxel_list_storage
-{
-    uint list_words[];
-};
+layout(binding = UNIT_VOXEL_LISTS) uniform usamplerBuffer list_texels;
 
-layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
-{
-    uint surfaces[]; // surface of each instance, then material and flags of each surface
-};
-
-layout(std430, binding = BIND_MATERIALS) readonly buffer material_storage
-{
-    material_block materials[];
-};
+// Surface of each instance, then material and flags of each surface.
+layout(binding = UNIT_VOXEL_SURFACES) uniform usamplerBuffer surfaces;
 
 // Area-weighted sums over what faces one way in the voxel.
 struct surfel_sum {
@@ -46,15 +33,20 @@ struct surfel_sum {
     bool thin; // includes a side of a zero-thickness surface
 };
 
+uint surfel_word(uint word)
+{
+    return texelFetch(surfels, int(word)).x;
+}
+
 vec3 signed_sum(uint word)
 {
-    return vec3(int(surfels[word]), int(surfels[word + 1u]), int(surfels[word + 2u]));
+    return vec3(int(surfel_word(word)), int(surfel_word(word + 1u)), int(surfel_word(word + 2u)));
 }
 
 // Adds a surfel to a face's sums; `turn` is -1 for the back of a double-sided surface.
 void add_surfel(inout surfel_sum s, uint word, material_block m, bool directly, float turn)
 {
-    float weight = float(surfels[word + SURFEL_WEIGHT]);
+    float weight = float(surfel_word(word + SURFEL_WEIGHT));
     float inverse = 1.0 / (255.0 * weight);
     vec3 base = m.base_color.rgb;
     float opacity = 1.0;
@@ -62,7 +54,7 @@ void add_surfel(inout surfel_sum s, uint word, material_block m, bool directly, 
 #if VOXEL_COLORS
     base *= signed_sum(word + SURFEL_COLOR) * inverse;
     emission *= signed_sum(word + SURFEL_EMISSION) * inverse;
-    opacity = float(surfels[word + SURFEL_OPACITY]) * inverse;
+    opacity = float(surfel_word(word + SURFEL_OPACITY)) * inverse;
 #endif
     uint alpha = m.flags & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK);
     opacity = alpha != 0u ? clamp(opacity * m.base_color.a, 0.0, 1.0) : 1.0;
@@ -80,7 +72,7 @@ void add_surfel(inout surfel_sum s, uint word, material_block m, bool directly, 
     vec3 reflectance = mix(dielectric, base * fraction.x + fraction.y, m.mean_metallic);
     bool unlit = (m.flags & MATERIAL_SHADING_MASK) == SHADE_UNLIT;
     s.weight += weight;
-    s.mask |= surfels[word + SURFEL_MASK];
+    s.mask |= surfel_word(word + SURFEL_MASK);
     s.normal += signed_sum(word + SURFEL_NORMAL) * turn;
     s.sub_voxel_position += signed_sum(word + SURFEL_SUB_VOXEL_POSITION) / 255.0;
     s.reflectance += weight * (unlit ? vec3(0.0) : clamp(reflectance, 0.0, 1.0));
@@ -133,7 +125,8 @@ vec3 direct_irradiance(vec3 position, vec3 normal, bool thin, float voxel_m)
 // Writes a face's sums to its record of the irradiance cache and adds its light to the texels.
 void store_side(uint cell, uint level, ivec3 voxel, uint i, surfel_sum s, inout face_sums sums)
 {
-    uint words = make_face(cell, level, voxel, i);
+    vec3 cached;
+    uint words = make_face(cell, level, voxel, i, cached);
     if (words == VOXEL_NONE)
         return;
     float inverse = 1.0 / s.weight;
@@ -162,7 +155,7 @@ void store_side(uint cell, uint level, ivec3 voxel, uint i, surfel_sum s, inout 
     faces[words + FACE_ALBEDO] =
         packed_albedo.x | (packed_albedo.y << 10) | (packed_albedo.z << 20);
 #if MULTI_BOUNCE
-    direct += albedo * face_light(words).rgb;
+    direct += albedo * cached;
 #endif
     add_face(sums, normal, vec4(direct, depth));
 }
@@ -172,26 +165,27 @@ void main()
     uint number = gl_GlobalInvocationID.x;
     if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
         return;
-    uint cell = list_words[LIST_LIT * voxels.list_capacity + number];
-    uint slot = cells[cell * CELL_WORDS] & CELL_SLOT_MASK;
-    uint level = cells[cell * CELL_WORDS] >> CELL_LEVEL_BIT;
+    uint cell = texelFetch(list_texels, int(LIST_LIT * voxels.list_capacity + number)).x;
+    uint cell_bits = cell_word(cell, 0u);
+    uint slot = cell_bits & CELL_SLOT_MASK;
+    uint level = cell_bits >> CELL_LEVEL_BIT;
     if (level < voxels.first_level || level >= voxels.end_level)
         return;
 #if FRESH
     for (uint i = 0u; i < VOXEL_FACES; i++)
-        if (cells[cell * CELL_WORDS + CELL_FACES + i] != 0u)
+        if (cell_word(cell, CELL_FACES + i) != 0u)
             return;
 #endif
     surfel_sum surfel_sums[VOXEL_FACES];
     for (uint i = 0u; i < VOXEL_FACES; i++)
         surfel_sums[i] =
             surfel_sum(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, false);
-    for (uint at = cells[cell * CELL_WORDS + CELL_SURFEL]; at != VOXEL_NONE;
-         at = surfels[at * SURFEL_WORDS + SURFEL_NEXT]) {
+    for (uint at = cell_word(cell, CELL_SURFEL); at != VOXEL_NONE;
+         at = surfel_word(at * SURFEL_WORDS + SURFEL_NEXT)) {
         uint word = at * SURFEL_WORDS;
-        uint key = surfels[word + SURFEL_KEY];
-        uint surface_word = surfaces[voxels.instance_count + (key >> 3)];
-        material_block m = materials[surface_word & SURFACE_MATERIAL_MASK];
+        uint key = surfel_word(word + SURFEL_KEY);
+        uint surface_word = texelFetch(surfaces, int(voxels.instance_count + (key >> 3))).x;
+        material_block m = load_material(surface_word & SURFACE_MATERIAL_MASK);
         bool directly = (surface_word & SURFACE_LIT_DIRECTLY) != 0u;
         add_surfel(surfel_sums[key & 7u], word, m, directly, 1.0);
         if ((m.flags & MATERIAL_DOUBLE_SIDED) != 0u) {

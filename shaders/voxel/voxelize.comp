@@ -14,10 +14,7 @@ layout(local_size_x = VOXEL_TILE_EDGE, local_size_y = VOXEL_TILE_EDGE) in;
 layout(local_size_x = VOXEL_BATCH) in;
 #endif
 
-layout(std430, binding = BIND_VOXEL_SURFACES) readonly buffer surface_storage
-{
-    uint instance_surfaces[]; // surface of each instance
-};
+layout(binding = UNIT_VOXEL_SURFACES) uniform usamplerBuffer surfaces; // of each instance
 
 layout(std430, binding = BIND_VOXEL_TILES) buffer tile_storage
 {
@@ -27,9 +24,9 @@ layout(std430, binding = BIND_VOXEL_TILES) buffer tile_storage
 // A triangle prepared for the walk. Axes a and b span the columns; c is the dominant axis.
 struct walk {
     overlap_triangle t;
-    uint instance;
-    uvec3 words; // first word of each vertex in `vertices`
-    uint axis;   // 0: abc = yzx, 1: zxy, 2: xyz
+    instance_words instance;
+    uvec3 texels; // first texel of each vertex
+    uint axis;    // 0: abc = yzx, 1: zxy, 2: xyz
     uint key;
     vec3 normal; // unit, world
     float area;  // in squared voxel edges
@@ -75,17 +72,18 @@ uint mask_from_abc(uint mask, uint axis)
 // False if the triangle has no area, is not finite, or lies outside the region.
 bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
 {
-    w.instance = instance;
-    uint first = instances[w.instance].first_index + 3u * triangle_number;
-    w.words = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) * VERTEX_WORDS;
-    w.level = regions[region].level;
+    w.instance = load_instance(instance);
+    w.texels =
+        texelFetch(triangles, int(w.instance.first_triangle + triangle_number)).xyz * VERTEX_TEXELS;
+    voxel_region where = load_region(region);
+    w.level = where.level;
     w.spare = VOXEL_NONE;
-    mat4 m = instances[w.instance].world_from_local;
+    mat4 m = load_transform(instance);
     dvec3 columns[4] = {dvec3(m[0].xyz), dvec3(m[1].xyz), dvec3(m[2].xyz), dvec3(m[3].xyz)};
     double edge = double(voxels.levels[w.level].voxel_edge_m);
     dvec3 v[3];
     for (int i = 0; i < 3; i++) {
-        dvec3 local = dvec3(fetch3(w.words[i]));
+        dvec3 local = dvec3(vertex_floats(w.texels[i]).xyz);
         precise dvec3 world =
             columns[0] * local.x + columns[1] * local.y + columns[2] * local.z + columns[3];
         v[i] = (world - dvec3(voxels.anchor)) / edge;
@@ -97,17 +95,17 @@ bool begin_walk(uint instance, uint triangle_number, uint region, out walk w)
         return false;
     w.area = 0.5 * size;
     w.normal = n / size;
-    if ((instances[w.instance].flags & INSTANCE_MIRRORED) != 0u)
+    if ((w.instance.flags & INSTANCE_MIRRORED) != 0u)
         w.normal = -w.normal;
-    w.key = instance_surfaces[w.instance] * 8u + dominant_face(w.normal);
+    w.key = texelFetch(surfaces, int(instance)).x * 8u + dominant_face(w.normal);
     w.axis = dominant_face(w.normal) >> 1u;
     for (int i = 0; i < 3; i++)
         w.t.v[i] = to_abc(v[i], w.axis);
     w.t.normal = to_abc(normal, w.axis);
     w.t.low = min(min(w.t.v[0], w.t.v[1]), w.t.v[2]);
     w.t.high = max(max(w.t.v[0], w.t.v[1]), w.t.v[2]);
-    ivec3 region_low = to_abc(regions[region].low, w.axis);
-    ivec3 region_high = region_low + to_abc(regions[region].size, w.axis) - 1;
+    ivec3 region_low = to_abc(where.low, w.axis);
+    ivec3 region_high = region_low + to_abc(where.size, w.axis) - 1;
     // Clamped before the conversion, so that it cannot overflow.
     dvec3 minimum = clamp(ceil(w.t.low) - 1.0lf, dvec3(region_low), dvec3(region_high) + 1.0lf);
     dvec3 maximum = clamp(floor(w.t.high), dvec3(region_low) - 1.0lf, dvec3(region_high));
@@ -137,24 +135,16 @@ void square_footprint(inout texture_point point, UV_VECTOR dx, UV_VECTOR dy)
 // Samples textures at the level that fits the voxel, at a point of the triangle.
 void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
 {
-    material_block material = materials[instances[w.instance].material];
+    material_block material = load_material(w.instance.material);
     vec4 base = vec4(1.0);
 #if VERTEX_COLORS
-    base = fetch4(w.words.x + VERTEX_COLOR) * weights.x +
-           fetch4(w.words.y + VERTEX_COLOR) * weights.y +
-           fetch4(w.words.z + VERTEX_COLOR) * weights.z;
+    base = interpolate_color(w.texels, weights);
 #endif
 #if COLOR_CLASSES > 0
     if ((material.texture_mask & COLOR_TEXTURE_SLOTS) != 0u) {
         texture_point point;
         point.level_dither = 0.0;
-#if SECOND_UV_SET
-        vec4 uv[3] = {fetch4(w.words.x + VERTEX_UV), fetch4(w.words.y + VERTEX_UV),
-                      fetch4(w.words.z + VERTEX_UV)};
-#else
-        vec2 uv[3] = {fetch2(w.words.x + VERTEX_UV), fetch2(w.words.y + VERTEX_UV),
-                      fetch2(w.words.z + VERTEX_UV)};
-#endif
+        UV_VECTOR uv[3] = {vertex_uv(w.texels.x), vertex_uv(w.texels.y), vertex_uv(w.texels.z)};
         vec2 e1 = vec2(w.t.v[1].xy - w.t.v[0].xy);
         vec2 e2 = vec2(w.t.v[2].xy - w.t.v[0].xy);
         float inverse = 1.0 / float(w.t.normal.z);
@@ -247,7 +237,7 @@ void main()
 }
 #else
 // Splits a triangle of many columns into tiles; false if there is no room for them.
-bool leave_tiles(walk w, uint triangle_number, uint region)
+bool leave_tiles(walk w, uint instance, uint triangle_number, uint region)
 {
     uvec2 count = uvec2(w.high.xy - w.low.xy) / VOXEL_TILE_EDGE + 1u;
     uint total = count.x * count.y;
@@ -255,18 +245,18 @@ bool leave_tiles(walk w, uint triangle_number, uint region)
     if (first + total > voxels.tile_capacity) {
         // Slots below the capacity must be harmless to process: repeating the same tile is.
         for (uint i = first; i < min(first + total, voxels.tile_capacity); i++)
-            tiles[i] = voxel_tile(w.instance, triangle_number, region, 0xffffffffu);
+            tiles[i] = voxel_tile(instance, triangle_number, region, 0xffffffffu);
         return false;
     }
     for (uint i = 0u; i < total; i++)
         tiles[first + i] =
-            voxel_tile(w.instance, triangle_number, region, (i % count.x) | ((i / count.x) << 16));
+            voxel_tile(instance, triangle_number, region, (i % count.x) | ((i / count.x) << 16));
     return true;
 }
 
 void main()
 {
-    voxel_batch batch = batches[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x];
+    voxel_batch batch = load_batch(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
     if (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x >= voxels.batch_count ||
         gl_LocalInvocationID.x >= batch.triangle_count)
         return;
@@ -276,7 +266,8 @@ void main()
         return;
     ivec2 size = w.high.xy - w.low.xy + 1;
     int count = size.x * size.y;
-    if (count > VOXEL_SMALL_COLUMNS && leave_tiles(w, triangle_number, batch.region))
+    if (count > VOXEL_SMALL_COLUMNS &&
+        leave_tiles(w, batch.instance, triangle_number, batch.region))
         return;
     for (int i = 0; i < count; i++)
         walk_column(w, w.low.xy + ivec2(i % size.x, i / size.x));

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "renderer/frame/frame_block.h"
 #include "renderer/gi/gi_method.h"
 #include "support_gpu.h"
 #include "voxcast_paths.h"
@@ -89,6 +90,7 @@ static void bind(struct voxel_rig *rig, struct voxel_volume *volume)
 {
     struct frame_block block = {0};
     block.texture_max_anisotropy = 1.0f;
+    frame_block_fill_tables(&rig->gpu_scene->tables, &block);
     gpu_buffer_write(rig->view->frame_block, 0, sizeof(block), &block);
     gpu_scene_bind(rig->gpu_scene);
     view_bind(rig->view);

@@ -445,10 +445,8 @@ static void test_debug_views(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_parameter),
-        cmocka_unit_test(test_single_bounce),
-        cmocka_unit_test(test_limited_bounces),
-        cmocka_unit_test(test_shading_in_reflections),
+        cmocka_unit_test(test_every_parameter), cmocka_unit_test(test_single_bounce),
+        cmocka_unit_test(test_limited_bounces), cmocka_unit_test(test_shading_in_reflections),
         cmocka_unit_test(test_debug_views),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_teardown);

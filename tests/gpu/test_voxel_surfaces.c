@@ -72,7 +72,7 @@ static struct face_record *read_faces(const struct voxel_volume *volume, uint32_
             speck = speck || abs(record->voxel[axis]) > 25;
         }
         const uint32_t *words =
-            &faces[(size_t)(number - 1) * (FACE_WORDS + volume->params.cache_cones)];
+            &faces[(size_t)(number - 1) * FACE_RECORD_WORDS(volume->params.cache_cones)];
         if (speck || words[FACE_NORMAL] == VOXEL_NONE)
             continue;
         unpack_face(words, record);

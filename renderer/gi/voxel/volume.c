@@ -41,7 +41,7 @@ static struct gpu_buffer *make(struct voxel_volume *volume, const char *label, s
 
 static uint32_t face_words(const struct voxel_volume *volume)
 {
-    return FACE_WORDS + volume->params.cache_cones;
+    return FACE_RECORD_WORDS(volume->params.cache_cones);
 }
 
 static uint32_t face_capacity(const struct voxel_volume *volume)
@@ -534,12 +534,18 @@ void voxel_volume_bind(struct voxel_volume *volume)
     gpu_bind_storage(gpu, BIND_SURFELS, volume->surfels);
     gpu_bind_storage(gpu, BIND_VOXEL_COUNTERS, volume->counters);
     gpu_bind_storage(gpu, BIND_VOXEL_FREE, volume->free_list);
-    gpu_bind_storage(gpu, BIND_VOXEL_WORK, volume->work);
     gpu_bind_storage(gpu, BIND_VOXEL_TILES, volume->tiles);
     gpu_bind_storage(gpu, BIND_VOXEL_LISTS, volume->lists);
-    gpu_bind_storage(gpu, BIND_VOXEL_SURFACES, volume->surfaces);
     gpu_bind_storage(gpu, BIND_CACHE_QUEUE, volume->queue);
     gpu_bind_storage(gpu, BIND_FACES, volume->faces);
+    gpu_bind_texels(gpu, UNIT_VOXEL_INDEX, volume->index, GPU_TEXEL_UINT);
+    gpu_bind_texels(gpu, UNIT_CELLS, volume->cells, GPU_TEXEL_UINT);
+    gpu_bind_texels(gpu, UNIT_FACES, volume->faces, GPU_TEXEL_UINT4);
+    gpu_bind_texels(gpu, UNIT_SURFELS, volume->surfels, GPU_TEXEL_UINT);
+    gpu_bind_texels(gpu, UNIT_VOXEL_WORK, volume->work, GPU_TEXEL_UINT4);
+    gpu_bind_texels(gpu, UNIT_VOXEL_LISTS, volume->lists, GPU_TEXEL_UINT);
+    gpu_bind_texels(gpu, UNIT_VOXEL_SURFACES, volume->surfaces, GPU_TEXEL_UINT);
+    gpu_bind_texels(gpu, UNIT_CACHE_QUEUE, volume->queue, GPU_TEXEL_UINT);
     gpu_bind_texture(gpu, UNIT_VOXEL_RADIANCE, volume->radiance);
     gpu_bind_image(gpu, IMAGE_VOXEL_RADIANCE, volume->radiance);
 }
