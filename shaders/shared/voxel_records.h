@@ -29,13 +29,13 @@
     4u // two words: irradiance / pi / scale as 3 halves, ambient visibility as a half
 #define FACE_SUB_VOXEL_POSITION  6u // mean position in the voxel, 3 x 10 bits; FACE_THIN
 #define FACE_REQUEST             7u // frame of the newest request
-#define FACE_DIRECT              8u // two words: emitted and directly lit radiance / scale, optical depth
+#define FACE_DIRECT              8u // two words: radiance but for bounces / scale, optical depth
 #define FACE_ALBEDO              10u // reflectance, 3 x 10 bits
 #define FACE_CELL                11u // cell * 8 + face
 #define FACE_RECORD_WORDS(cones) ((FACE_WORDS + (cones) + 3u) & ~3u)
 #define FACE_VALID               0x400000u   // FACE_LIGHT is valid
 #define FACE_MARCHED             0x800000u   // the cones' hits are valid; epoch: for which geometry
-#define FACE_THIN                0x40000000u // zero-thickness surface: its back is in this voxel, too
+#define FACE_THIN                0x40000000u // of no thickness: its back is in this voxel, too
 #define FACE_CHANGE_BIT          16
 #define FACE_EPOCH_BIT           24
 

@@ -24,19 +24,25 @@ const bench = {
   folder: '',
 };
 
-/** Draws what both programs are about to be measured by, which compiles the shaders, too. @param {Job} job */
+/**
+ * Draws what both programs are about to be measured by, which compiles the shaders, too. @param
+ * {Job} job
+ */
 async function compareOnce(job) {
   const images = [];
   let renderer = '';
   for (const side of SIDES) {
     const path = join(bench.folder, `${side}.pfm`);
-    renderer = (await runProgram(bench.programs[side], job, path, bench.environment('wall'))).gl_renderer;
+    renderer = (await runProgram(bench.programs[side], job, path, bench.environment('wall')))
+      .gl_renderer;
     images.push(readPfm(readFileSync(path)));
   }
   return { renderer, difference: compareImages(images[0], images[1]), image: images[0] };
 }
 
-/** Whether this program draws the same again; if not, the difference says little. @param {Job} job */
+/**
+ * Whether this program draws the same again; if not, the difference says little. @param {Job} job
+ */
 async function repeatsItself(job, image) {
   const path = join(bench.folder, 'again.pfm');
   await runProgram(bench.programs.this, job, path, bench.environment('wall'));
@@ -56,7 +62,12 @@ async function measure(job, { clocks, runs }, software) {
     tell(`${job.source}: pair ${done + 1} of ${order.length}, ${clock} time`);
     const pair = /** @type {Record<string, import('./pairs.mjs').Run>} */ ({});
     for (const side of first === 'this' ? SIDES : [...SIDES].reverse()) {
-      const statistics = await runProgram(bench.programs[side], job, path, bench.environment(clock));
+      const statistics = await runProgram(
+        bench.programs[side],
+        job,
+        path,
+        bench.environment(clock),
+      );
       pair[side] = runOf(statistics, job.move !== null, RENAMED_PASSES);
     }
     pairs[clock].push(pair);
@@ -66,7 +77,10 @@ async function measure(job, { clocks, runs }, software) {
     clock,
     rowsOf(pairs[clock]).filter(({ name }) => clock === 'wall' || software || name === 'frame'),
   ]);
-  return { clocks: Object.fromEntries(rows), unequal: unequalWork(clocks.flatMap((clock) => pairs[clock])) };
+  return {
+    clocks: Object.fromEntries(rows),
+    unequal: unequalWork(clocks.flatMap((clock) => pairs[clock])),
+  };
 }
 
 /** @param {{ name: string, job: Job }} scene @param {import('./options.mjs').Options} options */
@@ -77,13 +91,16 @@ async function benchScene({ name, job }, options) {
   const { renderer, difference, image } = await compareOnce(job);
   const result = { name, ...job, gl_renderer: renderer, image: difference };
   const words = [describeDifference(difference)];
-  if (!difference.equal && !(await repeatsItself(job, image))) words.push('this program does not repeat its own image');
+  if (!difference.equal && !(await repeatsItself(job, image)))
+    words.push('this program does not repeat its own image');
   const head = `\n${title}\n${words.join('; ')}\n`;
   if (!difference.equal && !options.allowDifferences)
     return { result, text: `${head}not measured; see --allow-differences\n`, done: false };
   const { clocks, unequal } = await measure(job, options, /llvmpipe|softpipe/.test(renderer));
   const unit = job.move ? 'ms a frame' : 'ms in all';
-  const notes = unequal.map((pass) => `${pass.name} ran in ${pass.this} frames of this, ${pass.that} of that\n`);
+  const notes = unequal.map(
+    (pass) => `${pass.name} ran in ${pass.this} frames of this, ${pass.that} of that\n`,
+  );
   return {
     result: { ...result, clocks, unequal },
     text: `${head}${formatTable(clocks, unit)}\n${notes.join('')}`,
@@ -106,10 +123,18 @@ export async function benchAgainst(root, program, args) {
   bench.environment = environmentsOf(options.cpu);
   bench.folder = mkdtempSync(join(tmpdir(), 'voxcast-bench-'));
   process.on('exit', () => rmSync(bench.folder, { recursive: true, force: true }));
-  const about = { this: describeCheckout(root), that: commit.slice(0, 7), cpu: options.cpu, runs: options.runs };
+  const about = {
+    this: describeCheckout(root),
+    that: commit.slice(0, 7),
+    cpu: options.cpu,
+    runs: options.runs,
+  };
   const cpu = options.cpu === 'native' ? '' : `; code for ${options.cpu} alone`;
   const out = options.json ? process.stderr : process.stdout;
-  out.write(`this ${about.this}, that ${about.that}; ratio: this / that, by ${about.runs} neighbouring runs${cpu}\n`);
+  out.write(
+    `this ${about.this}, that ${about.that}; ` +
+      `ratio: this / that, by ${about.runs} neighbouring runs${cpu}\n`,
+  );
   const scenes = [];
   for (const scene of options.scenes) {
     const { result, text, done } = await benchScene(scene, options);

@@ -1,4 +1,5 @@
-// ./dev bench: voxcast bench of this tree, or, with --against, this tree's program compared with another revision's.
+// ./dev bench: voxcast bench of this tree, or, with --against, this tree's program compared with
+// another revision's.
 import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';
@@ -36,7 +37,10 @@ function takeCpu(args) {
 function benchAlone(args) {
   const { cpu, rest } = takeCpu(args);
   if (cpu !== 'native') process.stderr.write(`bench: code for ${cpu} alone\n`);
-  const { status } = spawnSync(PROGRAM, ['bench', ...rest], { stdio: 'inherit', env: environmentOf(cpu) });
+  const { status } = spawnSync(PROGRAM, ['bench', ...rest], {
+    stdio: 'inherit',
+    env: environmentOf(cpu),
+  });
   if (rest.includes('--help')) process.stdout.write(HELP);
   process.exitCode = status ?? 1;
 }

@@ -1,6 +1,15 @@
-// Builds of other revisions: a worktree a commit below ~/.cache/voxcast/bench, kept for whoever asks next.
+// Builds of other revisions: a worktree a commit below ~/.cache/voxcast/bench, kept for whoever
+// asks next.
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readdirSync, rmSync, statSync, utimesSync, writeFileSync } from 'node:fs';
+import {
+  existsSync,
+  mkdirSync,
+  readdirSync,
+  rmSync,
+  statSync,
+  utimesSync,
+  writeFileSync,
+} from 'node:fs';
 import { homedir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -20,13 +29,24 @@ const stampOf = (/** @type {string} */ checkout) => join(checkout, 'build/bench-
 function run([program, ...args], options = {}) {
   const done = spawnSync(program, args, { encoding: 'utf8', maxBuffer: 1 << 26, ...options });
   if (done.status === 0) return done.stdout;
-  const output = `${done.stdout ?? ''}${done.stderr ?? done.error}`.trim().split('\n').slice(-20).join('\n');
+  const output = `${done.stdout ?? ''}${done.stderr ?? done.error}`
+    .trim()
+    .split('\n')
+    .slice(-20)
+    .join('\n');
   throw new Error(`${[program, ...args].join(' ')} failed:\n${output}`);
 }
 
 /** @param {string} root @param {string} revision @returns {string} the commit's hash */
 export function resolveCommit(root, revision) {
-  const found = spawnSync('git', ['-C', root, 'rev-parse', '--verify', '--quiet', `${revision}^{commit}`]);
+  const found = spawnSync('git', [
+    '-C',
+    root,
+    'rev-parse',
+    '--verify',
+    '--quiet',
+    `${revision}^{commit}`,
+  ]);
   if (found.status !== 0) throw new Error(`no revision ${revision}`);
   return found.stdout.toString().trim();
 }
@@ -35,7 +55,9 @@ export function resolveCommit(root, revision) {
 export const describeCheckout = (/** @type {string} */ root) =>
   run(['git', '-C', root, 'describe', '--always', '--abbrev=7', '--exclude=*', '--dirty']).trim();
 
-/** What nobody has asked for in a month is removed. @param {string} root @param {string} checkouts */
+/**
+ * What nobody has asked for in a month is removed. @param {string} root @param {string} checkouts
+ */
 function forgetOld(root, checkouts) {
   for (const name of readdirSync(checkouts)) {
     const stamp = stampOf(join(checkouts, name));

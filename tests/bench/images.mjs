@@ -1,9 +1,15 @@
 // By how much and where two images differ: PFM files, as voxcast writes them.
 
-/** @typedef {{ width: number, height: number, values: Float32Array }} FloatImage  RGB, from the bottom row */
+/**
+ * @typedef {{ width: number, height: number, values: Float32Array }} FloatImage  RGB, from the
+ * bottom row
+ */
 /** @typedef {{ x: number, y: number }} Position  row 0 is the top */
-/** @typedef {{ equal: boolean, pixels: number, differing: number, rmse: number, largest: number, at: Position | null,
- *    from: Position | null, to: Position | null }} Difference  `from` and `to` bound the pixels that differ */
+/**
+ * @typedef {{ equal: boolean, pixels: number, differing: number, rmse: number, largest: number, at:
+ * Position | null,
+ *    from: Position | null, to: Position | null }} Difference  `from` and `to` bound the pixels
+ *    that differ */
 
 /** @param {Buffer} file @returns {FloatImage} */
 export function readPfm(file) {
@@ -42,15 +48,19 @@ export function compareImages(a, b) {
   let farthest = -1;
   let squares = 0;
   for (let pixel = 0; pixel < pixels; pixel++) {
-    const distances = [0, 1, 2].map((i) => distance(a.values[3 * pixel + i], b.values[3 * pixel + i]));
-    const most = Math.max(...distances);
-    if (most === 0) continue;
+    const distances = [0, 1, 2].map((i) =>
+      distance(a.values[3 * pixel + i], b.values[3 * pixel + i]),
+    );
+    const apart = Math.max(...distances);
+    if (apart === 0) continue;
     differing.push(positionOf(a, pixel));
     squares += distances.reduce((sum, value) => sum + value * value, 0);
-    if (most > largest) [largest, farthest] = [most, pixel];
+    if (apart > largest) [largest, farthest] = [apart, pixel];
   }
-  const bound = (choose, key) => differing.reduce((value, at) => choose(value, at[key]), differing[0][key]);
-  const corner = (choose) => (differing.length > 0 ? { x: bound(choose, 'x'), y: bound(choose, 'y') } : null);
+  const bound = (choose, key) =>
+    differing.reduce((value, at) => choose(value, at[key]), differing[0][key]);
+  const corner = (choose) =>
+    differing.length > 0 ? { x: bound(choose, 'x'), y: bound(choose, 'y') } : null;
   return {
     equal: differing.length === 0,
     pixels,
@@ -68,7 +78,8 @@ export function describeDifference({ equal, pixels, differing, rmse, largest, at
   if (equal) return 'equal images';
   const part = Math.max((100 * differing) / pixels, 0.01).toFixed(2);
   return (
-    `images differ in ${differing} pixels (${part} %) within ${from.x},${from.y} to ${to.x},${to.y}: ` +
+    `images differ in ${differing} pixels (${part} %) ` +
+    `within ${from.x},${from.y} to ${to.x},${to.y}: ` +
     `RMSE ${rmse.toPrecision(3)} cd/m², most ${largest.toPrecision(3)} at ${at.x},${at.y}`
   );
 }

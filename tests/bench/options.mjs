@@ -6,16 +6,18 @@ import { parseArgs } from 'node:util';
 
 import { CLOCKS, CPUS } from './programs.mjs';
 
-/** @typedef {{ help: boolean, against: string, allowDifferences: boolean, clocks: string[], cpu: string, json: boolean,
- *    runs: number, scenes: { name: string, job: import('./programs.mjs').Job }[] }} Options */
+/**
+ * @typedef {{ help: boolean, against: string, allowDifferences: boolean, clocks: string[], cpu:
+ *    string, json: boolean, runs: number, scenes: { name: string, job: import('./programs.mjs').Job
+ *    }[] }} Options */
 
 const SCENES =
   process.env.VOXCAST_SCENES || fileURLToPath(new URL('../../../shared/scenes', import.meta.url));
 const SPONZA = join(SCENES, 'sponza/sponza.glb');
 
 /**
- * Small steps: the published box is half a metre wide, and where a clip level moves, the temporal budget decides what
- * frames do until its light has converged again.
+ * Small steps: the published box is half a metre wide, and where a clip level moves, the temporal
+ * budget decides what frames do until its light has converged again.
  */
 const MOVE = '0.005,0,0';
 const MAX_RUNS = 1000;
@@ -29,12 +31,14 @@ const DEFAULT_SCENES = [
 
 export const USAGE = `usage: ./dev bench --against REVISION [SCENE|builtin:NAME]... [OPTIONS]
 
-Builds REVISION in a tree of its own, runs both programs by turns (this, that, that, this) and prints for each scene
-the median of the ratios of neighbouring runs, for the frame and each pass, by wall time and by CPU time of all
-threads, with quartiles. Times are medians over frames, times the part of the frames in which a pass ran. Light
-converges before a moving camera is measured. A scene whose images differ is not measured; exit status 1.
+Builds REVISION in a tree of its own, runs both programs by turns (this, that, that, this) and
+prints for each scene the median of the ratios of neighbouring runs, for the frame and each pass, by
+wall time and by CPU time of all threads, with quartiles. Times are medians over frames, times the
+part of the frames in which a pass ran. Light converges before a moving camera is measured. A scene
+whose images differ is not measured; exit status 1.
 
-SCENE: default cornell with direct light alone, cornell-objects, atrium, and Sponza if VOXCAST_SCENES has it.
+SCENE: default cornell with direct light alone, cornell-objects, atrium, and Sponza if
+VOXCAST_SCENES has it.
 
   --runs N             pairs of runs for each clock, 1 to ${MAX_RUNS} (default 4)
   --frames N           frames of a moving camera in each run (default 20)
@@ -44,8 +48,10 @@ SCENE: default cornell with direct light alone, cornell-objects, atrium, and Spo
   --moving             a camera that moves (default)
   --at-rest            a camera at rest: times are sums until the image has converged
   --move-eye X,Y,Z     metres a frame (default ${MOVE}; 0.002,0,0 in atrium and Sponza)
-  --clock wall|cpu     by this clock alone, in half the runs; on a busy machine cpu is worth more (default both)
-  --cpu native|avx2    avx2: the driver generates no AVX-512, as where there is none (default native)
+  --clock wall|cpu     by this clock alone, in half the runs; on a busy machine cpu is worth more
+                       (default both)
+  --cpu native|avx2    avx2: the driver generates no AVX-512, as where there is none (default
+                       native)
   --gpu WHICH          auto, software or a device index (default auto)
   --allow-differences  measures in spite of images that differ
   --json               JSON on stdout; tables go to stderr
@@ -73,7 +79,9 @@ const DECLARED = {
 
 /** Ends the tool with status 2. @param {string} message @returns {never} */
 function refuse(message) {
-  throw Object.assign(new Error(`${message}; see ./dev bench --against REVISION --help`), { usage: true });
+  throw Object.assign(new Error(`${message}; see ./dev bench --against REVISION --help`), {
+    usage: true,
+  });
 }
 
 function parse(/** @type {string[]} */ args) {
@@ -84,10 +92,11 @@ function parse(/** @type {string[]} */ args) {
   }
 }
 
-/** @param {Record<string, any>} values @param {string} name @param {number} most */
-function countOf(values, name, most) {
+/** @param {Record<string, any>} values @param {string} name @param {number} maximum */
+function countOf(values, name, maximum) {
   const value = Number(values[name]);
-  if (!Number.isInteger(value) || value < 1 || value > most) refuse(`--${name} is "${values[name]}"; 1 to ${most}`);
+  if (!Number.isInteger(value) || value < 1 || value > maximum)
+    refuse(`--${name} is "${values[name]}"; 1 to ${maximum}`);
   return value;
 }
 
@@ -101,7 +110,9 @@ export function readOptions(args) {
   if (!/^\d+x\d+$/.test(values.size)) refuse(`--size is "${values.size}"; want WxH`);
   if (values.moving && values['at-rest']) refuse('--moving and --at-rest exclude each other');
   const chosen = positionals.map((source) => ({ name: source, source }));
-  const known = DEFAULT_SCENES.filter(({ source }) => source.startsWith('builtin:') || existsSync(source));
+  const known = DEFAULT_SCENES.filter(
+    ({ source }) => source.startsWith('builtin:') || existsSync(source),
+  );
   const frames = countOf(values, 'frames', 10000);
   const scenes = (chosen.length > 0 ? chosen : known).map(({ name, source, gi, move }) => ({
     name,

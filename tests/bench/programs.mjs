@@ -24,10 +24,10 @@ export const CPUS = ['native', 'avx2'];
 export const CLOCKS = ['wall', 'cpu'];
 
 /**
- * `render`, as `bench` has neither sizes nor methods, and writes no image. Every revision since 6e08ccd has these
- * options. Light converges before a moving camera is measured: until then the temporal budget, which depends on the
- * machine's speed, decides what a frame does. `interactive` gathers from the cache while the camera moves, so that
- * what only rests need not be awaited.
+ * `render`, as `bench` has neither sizes nor methods, and writes no image. Every revision since
+ * 6e08ccd has these options. Light converges before a moving camera is measured: until then the
+ * temporal budget, which depends on the machine's speed, decides what a frame does. `interactive`
+ * gathers from the cache while the camera moves, so that what only rests need not be awaited.
  * @param {Job} job
  */
 export function argumentsOf(job) {
@@ -41,7 +41,8 @@ export function argumentsOf(job) {
 }
 
 /**
- * Mesa's name for what is left without AVX-512 is "avx": AVX2, FMA and gathers stay. Its shader cache tells both apart.
+ * Mesa's name for what is left without AVX-512 is "avx": AVX2, FMA and gathers stay. Its shader
+ * cache tells both apart.
  * @param {string} cpu
  * @returns {NodeJS.ProcessEnv}
  */

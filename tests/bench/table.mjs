@@ -11,7 +11,8 @@ const ms = (/** @type {number | null} */ value) =>
 /** @param {Row} row */
 function cellsOf({ this_ms: own, that_ms: other, ratio }) {
   const spread = ratio ? `${ratio.lower.toFixed(3)}..${ratio.upper.toFixed(3)}` : '';
-  return `${ms(own)}${ms(other)}${(ratio?.median.toFixed(3) ?? '-').padStart(8)}${spread.padStart(15)}`;
+  const median = ratio?.median.toFixed(3) ?? '-';
+  return `${ms(own)}${ms(other)}${median.padStart(8)}${spread.padStart(15)}`;
 }
 
 /**
@@ -22,7 +23,9 @@ function cellsOf({ this_ms: own, that_ms: other, ratio }) {
 export function formatTable(clocks, unit) {
   const names = [...new Set(Object.values(clocks).flatMap((rows) => rows.map((row) => row.name)))];
   const line = (name, cells) => `${name.padEnd(NAME_COLUMNS)}${cells.join('   ')}`.trimEnd();
-  const titles = Object.keys(clocks).map((clock) => `${clock}, ${unit}`.padStart(20).padEnd(CLOCK_HEAD.length));
+  const titles = Object.keys(clocks).map((clock) =>
+    `${clock}, ${unit}`.padStart(20).padEnd(CLOCK_HEAD.length),
+  );
   const body = names.map((name) =>
     line(
       name,
@@ -32,5 +35,12 @@ export function formatTable(clocks, unit) {
       }),
     ),
   );
-  return [line('', titles), line('', titles.map(() => CLOCK_HEAD)), ...body].join('\n');
+  return [
+    line('', titles),
+    line(
+      '',
+      titles.map(() => CLOCK_HEAD),
+    ),
+    ...body,
+  ].join('\n');
 }

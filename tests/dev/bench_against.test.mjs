@@ -1,5 +1,6 @@
-// Proves the whole of ./dev bench --against on a repository of its own, whose voxcast is a script with known times:
-// which runs follow which, that a commit is built once, and that images that differ are refused.
+// Proves the whole of ./dev bench --against on a repository of its own, whose voxcast is a script
+// with known times: which runs follow which, that a commit is built once, and that images that
+// differ are refused.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -18,7 +19,8 @@ const BENCH = fileURLToPath(new URL('../bench', import.meta.url));
 
 describe('options', () => {
   test('light converges, and only interactive is content with the cache', () => {
-    const job = (...args) => argumentsOf(readOptions(['--against', 'X', 'builtin:furnace', ...args]).scenes[0].job);
+    const job = (...args) =>
+      argumentsOf(readOptions(['--against', 'X', 'builtin:furnace', ...args]).scenes[0].job);
     assert.ok(job().includes('--converge-first') && job().includes('gather_mode=cache'));
     assert.ok(!job('--quality', 'high').includes('gather_mode=cache'));
     assert.ok(!job('--at-rest').includes('--frames'));
@@ -33,7 +35,8 @@ describe('options', () => {
     ['--against', 'X', '--size', '9'],
     ['--against', 'X', '--unknown'],
   ])
-    test(`refuses "${args.join(' ')}"`, () => assert.throws(() => readOptions(args), { usage: true }));
+    test(`refuses "${args.join(' ')}"`, () =>
+      assert.throws(() => readOptions(args), { usage: true }));
 });
 
 const statisticsOf = (ms) => ({
@@ -59,13 +62,18 @@ describe('./dev bench --against', () => {
 
   const git = (...args) => {
     const identity = ['-c', 'user.name=x', '-c', 'user.email=x@example.org'];
-    const { status, stderr } = spawnSync('git', ['-C', root, ...identity, ...args], { encoding: 'utf8' });
+    const { status, stderr } = spawnSync('git', ['-C', root, ...identity, ...args], {
+      encoding: 'utf8',
+    });
     assert.equal(status, 0, stderr);
   };
   const bench = (...args) => {
     writeFileSync(log, '');
     const env = { ...process.env, XDG_CACHE_HOME: join(folder, 'cache'), BENCH_LOG: log };
-    return spawnSync('node', [join(root, 'tests/bench/bench.mjs'), ...args], { encoding: 'utf8', env });
+    return spawnSync('node', [join(root, 'tests/bench/bench.mjs'), ...args], {
+      encoding: 'utf8',
+      env,
+    });
   };
   const putProgram = (...what) => {
     mkdirSync(join(root, 'build/release/bin'), { recursive: true });
@@ -78,7 +86,10 @@ describe('./dev bench --against', () => {
     log = join(folder, 'log');
     cpSync(BENCH, join(root, 'tests/bench'), { recursive: true });
     const preset = { name: 'release', generator: 'Ninja', binaryDir: '${sourceDir}/build/release' };
-    writeFileSync(join(root, 'CMakePresets.json'), JSON.stringify({ version: 3, configurePresets: [preset] }));
+    writeFileSync(
+      join(root, 'CMakePresets.json'),
+      JSON.stringify({ version: 3, configurePresets: [preset] }),
+    );
     const copy = 'COMMAND cmake -E copy ${CMAKE_SOURCE_DIR}/script bin/voxcast';
     writeFileSync(
       join(root, 'CMakeLists.txt'),
