@@ -60,6 +60,12 @@ struct renderer *renderer_create(const struct renderer_params *params, struct er
         free(renderer);
         return NULL;
     }
+    if (!passes_prepare_gpu(renderer->gpu)) {
+        error_set(out_error, "out of memory");
+        gpu_destroy(&renderer->gpu);
+        free(renderer);
+        return NULL;
+    }
     gpu_set_yield(renderer->gpu, params->yield, params->user);
     if (params->watch_shaders)
         gpu_programs_watch(renderer->gpu);
@@ -368,6 +374,9 @@ void renderer_view_release(struct renderer *renderer, struct view *view)
     view->ring_oldest = (view->ring_oldest + 1) % RENDERER_FRAMES_IN_RING;
     view->ring_count--;
 }
+
+_Static_assert((int)PASS_COUNT <= (int)RENDERER_MAX_PASSES, "statistics have room for so many");
+_Static_assert((int)EFFECT_COUNT <= (int)RENDERER_MAX_EFFECTS, "statistics have room for so many");
 
 static void list_memory(const struct gpu *gpu, struct frame_statistics *statistics)
 {

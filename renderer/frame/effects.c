@@ -48,6 +48,7 @@ static struct effect_facts find_facts(const struct frame_inputs *in,
 struct decision {
     bool on;
     bool forceable; // by "force all effects"
+    bool calls_for_cones;
     const char *reason;
     char text[96];
 };
@@ -80,6 +81,9 @@ static void choose(struct decision *decision, bool on, bool forceable, const cha
         choose(decision, false, false, "", why_not);                                               \
     else                                                                                           \
         otherwise
+#define CALLS_FOR_CONES(otherwise)                                                                 \
+    decision->calls_for_cones = true;                                                              \
+    WITH_CONES(otherwise)
 #define WITH_CONES(otherwise)                                                                      \
     if (!(in->gi_capabilities & GI_HAS_CONES))                                                     \
         choose(decision, false, false, "",                                                         \
@@ -116,9 +120,10 @@ void effects_plan(struct effect_plan *plan, const struct frame_inputs *in,
         struct decision decision = {0};
         rules[i](&decision, in, &facts);
         if (!decision.on && decision.forceable && in->params->settings.force_all_effects)
-            decision = (struct decision){.on = true, .reason = "forced"};
+            choose(&decision, true, true, "forced", "");
         if (decision.on)
             plan->bits |= EFFECT_BIT(i);
+        plan->calls_for_cones = plan->calls_for_cones || (decision.on && decision.calls_for_cones);
         snprintf(plan->reasons[i], sizeof(plan->reasons[i]), "%s", decision.reason);
     }
 }

@@ -3,6 +3,7 @@
 #ifndef VOXCAST_RENDERER_FRAME_EFFECTS_H
 #define VOXCAST_RENDERER_FRAME_EFFECTS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 // What a method of global illumination offers: effects are planned by it, and passes ask for it.
@@ -28,14 +29,9 @@ enum effect {
      EFFECT_BIT(EFFECT_PUNCTUAL_LIGHTS) | EFFECT_BIT(EFFECT_AREA_LIGHTS) |                         \
      EFFECT_BIT(EFFECT_BLINN_PHONG) | EFFECT_BIT(EFFECT_SPECULAR) |                                \
      EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE))
-// Effects that need the scene's voxels.
-#define VOXEL_EFFECTS                                                                              \
-    (EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE) | EFFECT_BIT(EFFECT_INDIRECT_SPECULAR) |                  \
-     EFFECT_BIT(EFFECT_REFRACTION) | EFFECT_BIT(EFFECT_SOFT_SHADOWS) |                             \
-     EFFECT_BIT(EFFECT_AMBIENT_OCCLUSION))
-
 struct effect_plan {
     uint32_t bits;
+    bool calls_for_cones; // one of them is on that needs the scene's voxels
     char reasons[EFFECT_COUNT][96];
 };
 

@@ -346,6 +346,8 @@ static void plan_accumulation(struct frame_plan *plan, const struct frame_inputs
     plan->needs_bvh = frame_plan_has_cones(in) && rays && accumulation->sample;
 }
 
+const char frame_plan_undecided[] = "not decided yet";
+
 #define IN_REFERENCE 1
 #define ACCUMULATING 2
 #define SKIP_IF(condition, reason)                                                                 \
@@ -378,9 +380,13 @@ const char *pass_name(enum pass_id pass)
     return pass_rules[pass].name;
 }
 
+_Static_assert(EFFECT_COUNT <= 32 && SWITCH_COUNT <= 32, "programs name them as bits of a mask");
+
 static void plan_passes(struct frame_plan *plan, const struct frame_inputs *in)
 {
     static const enum pass_id writers[] = {PASS_ENVIRONMENT, PASS_DIRECT_LIGHT, PASS_EMISSION};
+    for (int i = 0; i < PASS_COUNT; i++)
+        plan->skip_reasons[i] = frame_plan_undecided;
     for (int i = 0; i < PASS_COUNT; i++)
         plan->skip_reasons[i] = in->reference_shown && !(pass_rules[i].when & IN_REFERENCE)
                                     ? "the reference's picture is shown"

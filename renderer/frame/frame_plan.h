@@ -3,6 +3,7 @@
 #ifndef VOXCAST_RENDERER_FRAME_FRAME_PLAN_H
 #define VOXCAST_RENDERER_FRAME_FRAME_PLAN_H
 
+#include <assert.h>
 #include <stddef.h>
 
 #include "renderer/frame/effects.h"
@@ -161,8 +162,12 @@ bool frame_plan_has_cone_shadows(const struct frame_inputs *in, const struct fra
 // Whether pixels read the cache instead of gathering the last bounce themselves.
 bool frame_plan_shows_cache(const struct frame_inputs *in, const struct frame_plan *plan);
 
+// Of passes below one whose rules are asked.
+extern const char frame_plan_undecided[];
+
 static inline bool frame_plan_runs(const struct frame_plan *plan, enum pass_id pass)
 {
+    assert(plan->skip_reasons[pass] != frame_plan_undecided); // rules may ask of passes above
     return plan->skip_reasons[pass] == NULL;
 }
 

@@ -53,4 +53,10 @@ struct resource_row {
 
 extern const struct resource_row resource_rows[RESOURCE_COUNT];
 
+#define RESOURCE_DEFINES_BYTES 2048u
+
+// Where shaders find the view's buffers: lines of BIND_id and UNIT_id, which stand before all
+// shaders (gpu_set_shader_defines()).
+void resources_write_defines(char out_defines[RESOURCE_DEFINES_BYTES]);
+
 #endif

@@ -114,6 +114,7 @@ void gpu_destroy(struct gpu **gpu_slot)
     gpu_programs_destroy(gpu);
     assert(!gpu->allocations);
     gpu_egl_close(gpu);
+    free(gpu->shader_defines);
     free(gpu);
 }
 

@@ -22,6 +22,7 @@ struct gpu {
     EGLContext context;
     struct renderer_info info;
     char shader_dir[1024];
+    char *shader_defines; // NULL for none
     uint64_t error_count;
     struct gpu_allocation *allocations;
     struct gpu_program_library *programs;

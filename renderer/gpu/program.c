@@ -23,7 +23,7 @@ struct gpu_program {
     bool stale;
     uint64_t used; // the library's clock when it was last asked for
     struct gpu_program_bindings bindings;
-    bool bindings_taken; // since the program was built
+    bool seen; // gpu_program_take_new() has been asked since it was built
     uint32_t file_count;
     char (*files)[SHADER_MAX_PATH];
 };
@@ -87,7 +87,9 @@ static GLuint build_stage(struct gpu *gpu, struct gpu_program *program, GLenum s
     char path[SHADER_MAX_PATH + 8];
     snprintf(path, sizeof(path), "%s%s", program->path, extension);
     struct shader_source source;
-    bool read = shader_source_read(&source, gpu->shader_dir, path, program->defines, out_error);
+    const char *const defines[] = {gpu->shader_defines ? gpu->shader_defines : "",
+                                   program->defines};
+    bool read = shader_source_read(&source, gpu->shader_dir, path, defines, 2, out_error);
     record_files(program, &source);
     if (!read)
         return 0;
@@ -134,14 +136,24 @@ static void find_bindings(GLuint name, struct gpu_program_bindings *bindings)
     find_units(name, bindings);
 }
 
-bool gpu_program_take_bindings(const struct gpu_program *program,
-                               struct gpu_program_bindings *out_bindings)
+const struct gpu_program_bindings *gpu_program_get_bindings(const struct gpu_program *program)
+{
+    return &program->bindings;
+}
+
+bool gpu_program_take_new(const struct gpu_program *program)
 {
     struct gpu_program *own = (struct gpu_program *)program; // all of them are this module's
-    bool taken = own->bindings_taken;
-    own->bindings_taken = true;
-    *out_bindings = program->bindings;
-    return !taken;
+    bool seen = own->seen;
+    own->seen = true;
+    return !seen;
+}
+
+bool gpu_set_shader_defines(struct gpu *gpu, const char *defines)
+{
+    free(gpu->shader_defines);
+    gpu->shader_defines = strdup(defines);
+    return gpu->shader_defines != NULL;
 }
 
 // Builds a GL program object; 0 on failure. Replaces the program's list of files in either case.
@@ -180,7 +192,7 @@ static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *
         } else {
             glObjectLabel(GL_PROGRAM, name, -1, program->path);
             find_bindings(name, &program->bindings);
-            program->bindings_taken = false;
+            program->seen = false;
         }
     }
     for (uint32_t i = 0; i < count; i++)

@@ -11,6 +11,10 @@
 const struct gpu_program *gpu_program_get(struct gpu *gpu, const char *path, const char *defines,
                                           struct error *out_error);
 
+// Lines of defines that stand before every shader. Call before the first program is built; copied.
+// False when memory runs out.
+bool gpu_set_shader_defines(struct gpu *gpu, const char *defines);
+
 // Rebuilds programs whose files have changed on disk; checks a few times per second at most. A
 // program that fails keeps its last good build. Returns the number rebuilt; errors go to
 // `out_error`.
@@ -27,9 +31,10 @@ struct gpu_program_bindings {
     uint32_t images;  // bits of the image units
 };
 
-// False where they have been asked for since the program was built: nothing has changed.
-bool gpu_program_take_bindings(const struct gpu_program *program,
-                               struct gpu_program_bindings *out_bindings);
+const struct gpu_program_bindings *gpu_program_get_bindings(const struct gpu_program *program);
+
+// Whether this is asked for the first time since the program was built.
+bool gpu_program_take_new(const struct gpu_program *program);
 
 // The offset in bytes of a member of a uniform or storage block, such as "frame.near_m" or
 // "lights[0].type", as the driver lays it out. False if the program has none of this name.

@@ -91,7 +91,7 @@ static bool expand(struct text_builder *builder, const char *path, int depth,
 }
 
 bool shader_source_read(struct shader_source *source, const char *folder, const char *path,
-                        const char *defines, struct error *out_error)
+                        const char *const defines[], uint32_t define_count, struct error *out_error)
 {
     *source = (struct shader_source){0};
     size_t size = 0;
@@ -99,11 +99,12 @@ bool shader_source_read(struct shader_source *source, const char *folder, const 
     if (!builder.stream)
         return error_set(out_error, "out of memory");
     fprintf(builder.stream, "#version 450 core\n");
-    for (const char *line = defines; *line;) {
-        size_t length = strcspn(line, "\n");
-        fprintf(builder.stream, "#define %.*s\n", (int)length, line);
-        line += length + (line[length] == '\n');
-    }
+    for (uint32_t i = 0; i < define_count; i++)
+        for (const char *line = defines[i]; *line;) {
+            size_t length = strcspn(line, "\n");
+            fprintf(builder.stream, "#define %.*s\n", (int)length, line);
+            line += length + (line[length] == '\n');
+        }
     bool done = expand(&builder, path, 0, out_error);
     fclose(builder.stream);
     if (!done)

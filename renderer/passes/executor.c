@@ -31,6 +31,13 @@ bool passes_check(const struct pass *const *passes, uint32_t count, struct error
     return true;
 }
 
+bool passes_prepare_gpu(struct gpu *gpu)
+{
+    char defines[RESOURCE_DEFINES_BYTES];
+    resources_write_defines(defines);
+    return gpu_set_shader_defines(gpu, defines);
+}
+
 // Slots of the resources whose bits are set.
 static struct gpu_program_bindings slots_of(uint32_t resources)
 {
@@ -46,10 +53,8 @@ static struct gpu_program_bindings slots_of(uint32_t resources)
 
 const char *pass_find_undeclared(const struct pass *pass, const struct gpu_program *program)
 {
-    struct gpu_program_bindings bound;
-    if (!gpu_program_take_bindings(program, &bound))
-        return NULL;
-    struct gpu_program_bindings declared = slots_of(pass->reads | pass->writes);
+    const struct gpu_program_bindings bound = *gpu_program_get_bindings(program);
+    const struct gpu_program_bindings declared = slots_of(pass->reads | pass->writes);
     for (uint32_t i = 0; i < RESOURCE_COUNT; i++) {
         const struct resource_row *row = &resource_rows[i];
         if ((bound.storage & ~declared.storage & row->storage) ||
@@ -69,9 +74,7 @@ static void bind_buffers(const struct frame *frame, const struct pass *pass)
             const struct resource_row *row = &resource_rows[i];
             const struct gpu_buffer *buffer = frame->view->buffers[i];
             gpu_bind_storage(frame->gpu, (uint32_t)__builtin_ctz(row->storage), buffer);
-            if (row->units)
-                gpu_bind_texels(frame->gpu, (uint32_t)__builtin_ctzll(row->units), buffer,
-                                row->texel);
+            gpu_bind_texels(frame->gpu, (uint32_t)__builtin_ctzll(row->units), buffer, row->texel);
         }
 }
 
@@ -125,7 +128,8 @@ const struct gpu_program *pass_program(const struct frame *frame, const struct p
     shader_program_write_defines(shader, frame->plan, defines);
     const struct gpu_program *program =
         gpu_program_get(frame->gpu, shader->path, defines, out_error);
-    const char *undeclared = program ? pass_find_undeclared(pass, program) : NULL;
+    const char *undeclared =
+        program && gpu_program_take_new(program) ? pass_find_undeclared(pass, program) : NULL;
     if (undeclared) {
         log_write(LOG_ERROR, "pass_undeclared shader=%s resource=%s", shader->path, undeclared);
         gpu_count_error(frame->gpu);

@@ -59,6 +59,10 @@ extern const struct pass *const all_passes[PASS_COUNT];
 // Runs the passes of the plan in order and times each. False with a message if one fails.
 bool passes_execute(struct frame *frame, struct error *out_error);
 
+// Tells the GPU what all shaders of passes need to know. Call once, after gpu_create(). False when
+// memory runs out.
+bool passes_prepare_gpu(struct gpu *gpu);
+
 // Whether every resource is written before it is read, in the order of `passes`. On failure the
 // message names the pass and the resource.
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error);
@@ -71,7 +75,7 @@ void shader_program_write_defines(const struct shader_program *program,
                                   char out_defines[PROGRAM_DEFINES_BYTES]);
 
 // The name of a resource that a program binds, as the driver sees it, and its pass does not
-// declare. NULL if there is none, or if the program has been asked about since it was built.
+// declare. NULL if there is none.
 const char *pass_find_undeclared(const struct pass *pass, const struct gpu_program *program);
 
 // The pass's program for the frame's plan. Once per build it is compared with what the pass

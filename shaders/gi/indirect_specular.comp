@@ -11,7 +11,7 @@
 
 layout(local_size_x = GROUP_EDGE / 2, local_size_y = GROUP_EDGE / 2) in;
 
-layout(std430, binding = BIND_TILES) readonly buffer tile_storage
+layout(std430, binding = BIND_GLOSSY_TILES) readonly buffer tile_storage
 {
     uint tile_count; // groups in x of the indirect dispatch; then y and z
     uint tile_groups_y;

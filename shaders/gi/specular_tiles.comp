@@ -5,7 +5,7 @@
 
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
 
-layout(std430, binding = BIND_TILES) buffer tile_storage
+layout(std430, binding = BIND_GLOSSY_TILES) buffer tile_storage
 {
     uint tile_count; // groups in x of the indirect dispatch; then y and z
     uint tile_groups_y;

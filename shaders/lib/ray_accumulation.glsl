@@ -2,7 +2,7 @@
 #include "lib/surface.glsl"
 #include "shared/ray_accumulation.h"
 
-layout(std430, binding = BIND_INDIRECT) writeonly buffer indirect_storage
+layout(std430, binding = BIND_ACCUMULATION) writeonly buffer indirect_storage
 {
     vec4 accumulated[];
 };

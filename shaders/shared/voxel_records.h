@@ -27,9 +27,9 @@
 #define FACE_STATE  3u  // generation (16 bits) | change << 16 (6 bits) | flags | epoch << 24
 #define FACE_LIGHT                                                                                 \
     4u // two words: irradiance / pi / scale as 3 halves, ambient visibility as a half
-#define FACE_SUB_VOXEL_POSITION  6u // mean position in the voxel, 3 x 10 bits; FACE_THIN
-#define FACE_REQUEST             7u // frame of the newest request
-#define FACE_DIRECT              8u // two words: radiance but for bounces / scale, optical depth
+#define FACE_SUB_VOXEL_POSITION  6u  // mean position in the voxel, 3 x 10 bits; FACE_THIN
+#define FACE_REQUEST             7u  // frame of the newest request
+#define FACE_DIRECT              8u  // two words: radiance but for bounces / scale, optical depth
 #define FACE_ALBEDO              10u // reflectance, 3 x 10 bits
 #define FACE_CELL                11u // cell * 8 + face
 #define FACE_RECORD_WORDS(cones) ((FACE_WORDS + (cones) + 3u) & ~3u)

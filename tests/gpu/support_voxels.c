@@ -24,6 +24,7 @@ void voxel_rig_init(struct voxel_rig *rig, struct scene *scene)
     rig->gpu = gpu_create("auto", folder ? folder : VOXCAST_SOURCE_DIR "/shaders", &error);
     if (!rig->gpu)
         fail_msg("%s", error.message);
+    assert_true(passes_prepare_gpu(rig->gpu));
     scene_update_world_transforms(scene);
     rig->gpu_scene = gpu_scene_create(rig->gpu, scene, &error);
     if (!rig->gpu_scene)

@@ -1,5 +1,5 @@
-// Proves that every shader compiles as frames can ask for it, and that passes declare what it
-// binds.
+// Proves that every shader compiles as frames can ask for it, that passes declare what it binds,
+// that what it reads is there, and that no name of its conditions is forgotten.
 //
 // Plans of many random frames tell which permutations are reachable. Of a program that has few, all
 // are compiled; of the others enough to have each value of each define together with each value of
@@ -16,6 +16,7 @@
 #include <cmocka.h>
 
 #include "renderer/gpu/program.h"
+#include "renderer/gpu/shader_source.h"
 #include "renderer/hash.h"
 #include "renderer/passes/pass.h"
 #include "voxcast_paths.h"
@@ -80,6 +81,8 @@ static void random_scene(struct scene_facts *scene)
     uint32_t *counts = (uint32_t *)&scene->counts;
     for (size_t i = 0; i < sizeof(scene->counts) / sizeof(*counts); i++)
         counts[i] = below(2) ? 1 + below(2) * FRAME_MAX_RAY_LIGHTS : 0;
+    if (scene->counts.ranged_lights > scene->counts.lights)
+        scene->counts.ranged_lights = scene->counts.lights;
     scene->environment = below(2);
     scene->cascaded_shadow = below(2);
     scene->color_classes = below(6);
@@ -105,8 +108,8 @@ static void random_settings(struct render_settings *settings)
     settings->exposure_mode = (enum exposure_mode)below(2);
 }
 
-// A plan of a random frame.
-static void random_plan(struct frame_plan *plan)
+// A plan of a random frame. `out_in` stays valid until the next call.
+static void random_plan(struct frame_plan *plan, struct frame_inputs *out_in)
 {
     static const uint32_t methods[] = {0, GI_IS_REFERENCE, GI_HAS_CONES,
                                        GI_HAS_CONES | GI_HAS_CLIP_LEVELS,
@@ -122,7 +125,8 @@ static void random_plan(struct frame_plan *plan)
     random_settings(&params.settings);
     history = (struct frame_history){.drawn = below(4) > 0, .params = params};
     history.accumulation.samples = below(80);
-    const struct gi_state gi = {
+    static struct gi_state gi;
+    gi = (struct gi_state){
         .serial = 1,
         .level_count = 1 + below(3),
         .cell_level_count = 1 + below(2),
@@ -143,8 +147,10 @@ static void random_plan(struct frame_plan *plan)
                               .transparent_in_view = below(2)};
     random_scene(&in.scene);
     in.reference_shown = in.gi_capabilities == GI_IS_REFERENCE && below(2);
-    in.gi = (in.gi_capabilities & GI_HAS_CONES) && below(8) ? &gi : NULL;
     frame_plan_make(plan, &in);
+    in.gi = plan->effects.calls_for_cones ? &gi : NULL;
+    frame_plan_make(plan, &in);
+    *out_in = in;
 }
 
 struct tally {
@@ -155,8 +161,58 @@ struct tally {
     uint32_t compiled, failed;
 };
 
+// What a permutation reads must be there. Storage blocks do not tell: those of included files count
+// as active, used or not.
+static void check_buffers(struct tally *tally, const struct gpu_program *program,
+                          const struct frame_inputs *in, const struct frame_plan *plan,
+                          const char *path)
+{
+    const struct gpu_program_bindings *bound = gpu_program_get_bindings(program);
+    for (int i = 0; i < RESOURCE_COUNT; i++) {
+        const struct resource_row *row = &resource_rows[i];
+        // Passes run the programs that add samples only in frames that do.
+        if (i == RESOURCE_ACCUMULATION && !plan->accumulation.sample)
+            continue;
+        if ((bound->units & row->units) && row->bytes && row->bytes(in, plan) == 0) {
+            tally->failed++;
+            print_error("%s uses %s, which takes no memory in this frame\n", path, row->name);
+        }
+    }
+}
+
+// Names in the #if lines of a shader itself are defined: a program that does not list an effect
+// would leave its code out in silence.
+static void check_names(struct tally *tally, const char *path, const char *defines)
+{
+    const char *const texts[] = {defines};
+    struct error error = {""};
+    struct shader_source whole;
+    char full[512], line[512];
+    if (!shader_source_read(&whole, gpu_get_shader_dir(tally->gpu), path, texts, 1, &error))
+        fail_msg("%s", error.message);
+    snprintf(full, sizeof(full), "%s/%s", gpu_get_shader_dir(tally->gpu), path);
+    FILE *file = fopen(full, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof(line), file)) {
+        if (strncmp(line, "#if ", 4) != 0 && strncmp(line, "#elif ", 6) != 0)
+            continue;
+        line[strcspn(line, "/\n")] = '\0'; // comments
+        for (char *name = strtok(line, " !()&|=<>"); name; name = strtok(NULL, " !()&|=<>")) {
+            char define[128];
+            snprintf(define, sizeof(define), "#define %s ", name);
+            if (name[0] >= 'A' && name[0] <= 'Z' && !strstr(whole.text, define)) {
+                tally->failed++;
+                print_error("%s: %s is not defined\n", path, name);
+            }
+        }
+    }
+    fclose(file);
+    shader_source_finish(&whole);
+}
+
 static void compile(struct tally *tally, enum pass_id pass, const struct shader_program *shader,
-                    const char *defines)
+                    const char *defines, const struct frame_inputs *in,
+                    const struct frame_plan *plan)
 {
     struct error error = {""};
     const struct gpu_program *program = gpu_program_get(tally->gpu, shader->path, defines, &error);
@@ -171,9 +227,11 @@ static void compile(struct tally *tally, enum pass_id pass, const struct shader_
         tally->failed++;
         print_error("pass %s does not declare %s\n", pass_name(pass), undeclared);
     }
+    check_buffers(tally, program, in, plan, shader->path);
 }
 
-static void take_plan(struct tally *tally, const struct frame_plan *plan)
+static void take_plan(struct tally *tally, const struct frame_inputs *in,
+                      const struct frame_plan *plan)
 {
     for (int i = 0; i < PASS_COUNT; i++) {
         const struct pass *pass = all_passes[i];
@@ -188,7 +246,9 @@ static void take_plan(struct tally *tally, const struct frame_plan *plan)
                 continue;
             bool few = ++tally->reached[i][j] <= FEW;
             if (add_pairs(tally->pairs, program, defines) > 0 || few)
-                compile(tally, (enum pass_id)i, &pass->programs[j], defines);
+                compile(tally, (enum pass_id)i, &pass->programs[j], defines, in, plan);
+            if (tally->reached[i][j] == 1 && strstr(pass->programs[j].path, ".comp"))
+                check_names(tally, pass->programs[j].path, defines);
         }
     }
 }
@@ -205,12 +265,14 @@ static void test_reachable_permutations_compile(void **state)
     };
     if (!tally.gpu)
         fail_msg("%s", error.message);
+    assert_true(passes_prepare_gpu(tally.gpu));
     assert_non_null(tally.seen);
     assert_non_null(tally.pairs);
     for (int i = 0; i < FRAMES; i++) {
         struct frame_plan plan;
-        random_plan(&plan);
-        take_plan(&tally, &plan);
+        struct frame_inputs in;
+        random_plan(&plan, &in);
+        take_plan(&tally, &in, &plan);
     }
     for (int i = 0; i < PASS_COUNT; i++)
         for (uint32_t j = 0; j < all_passes[i]->program_count; j++)
@@ -231,6 +293,7 @@ static void test_a_resource_that_is_not_declared_is_found(void **state)
     struct gpu *gpu = gpu_create("auto", VOXCAST_SOURCE_DIR "/shaders", &error);
     if (!gpu)
         fail_msg("%s", error.message);
+    assert_true(passes_prepare_gpu(gpu));
     struct pass pass = emission_pass;
     pass.reads &= ~RESOURCE(GBUFFER);
     const struct gpu_program *program = gpu_program_get(gpu, pass.programs[0].path, "", &error);

@@ -257,7 +257,7 @@ static bool too_many_own(const struct gi *gi, const struct frame *frame)
 
 static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
 {
-    if (!(frame->plan->effects.bits & VOXEL_EFFECTS))
+    if (!frame->plan->effects.calls_for_cones)
         return true;
     const struct render_settings *settings = &frame->params->settings;
     struct voxel_volume_params params = volume_params(frame);
