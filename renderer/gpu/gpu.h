@@ -80,6 +80,9 @@ void gpu_bind_texture(struct gpu *gpu, uint32_t slot, const struct gpu_texture *
 // are not ordered.
 void gpu_bind_texels(struct gpu *gpu, uint32_t unit, const struct gpu_buffer *buffer,
                      enum gpu_texel texel);
+
+// Whether shaders can reach all of a buffer of this size by texels; the driver sets a limit.
+bool gpu_texels_fit(const struct gpu *gpu, enum gpu_texel texel, uint64_t size_bytes);
 void gpu_bind_image(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture);
 
 // Dispatches x * y * z groups of a compute program.

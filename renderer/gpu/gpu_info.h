@@ -12,6 +12,7 @@ struct renderer_info {
     bool software;   // llvmpipe or another CPU rasteriser
     bool gpu_timers; // timer queries are reliable for compute dispatches
     uint32_t max_texture_edge;
+    uint32_t max_buffer_texels;
 };
 
 // Faults of drivers and machines, for tests.

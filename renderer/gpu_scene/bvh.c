@@ -319,6 +319,8 @@ static bool build(struct bvh_work *work)
 
 static struct gpu_buffer *upload(struct gpu *gpu, const void *texels, size_t count)
 {
+    if (!gpu_texels_fit(gpu, GPU_TEXEL_UINT4, count * 16))
+        return NULL;
     return gpu_buffer_create(gpu, "geometry.bvh", GPU_BUFFER_STATIC, count * 4 * sizeof(uint32_t),
                              texels);
 }

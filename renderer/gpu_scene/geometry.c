@@ -51,9 +51,11 @@ static uint32_t *pack_vertices(const struct scene *scene)
 }
 
 static bool upload(struct gpu_scene *gpu_scene, struct gpu_buffer **buffer, const char *label,
-                   size_t size_bytes, const void *data)
+                   enum gpu_texel texel, size_t size_bytes, const void *data)
 {
     gpu_buffer_destroy(buffer);
+    if (!gpu_texels_fit(gpu_scene->gpu, texel, size_bytes))
+        return false;
     *buffer = gpu_buffer_create(gpu_scene->gpu, label, GPU_BUFFER_STATIC, size_bytes, data);
     return *buffer != NULL;
 }
@@ -134,9 +136,9 @@ bool gpu_scene_upload_geometry(struct gpu_scene *gpu_scene)
     gpu_scene->drawable = scene->index_count > 0 && count > 0;
     uint32_t *words = pack_vertices(scene);
     bool done = words &&
-                upload(gpu_scene, &gpu_scene->vertices, "geometry.vertices",
+                upload(gpu_scene, &gpu_scene->vertices, "geometry.vertices", GPU_TEXEL_UINT4,
                        (size_t)scene->vertex_count * VERTEX_WORDS * sizeof(*words), words) &&
-                upload(gpu_scene, &gpu_scene->indices, "geometry.indices",
+                upload(gpu_scene, &gpu_scene->indices, "geometry.indices", GPU_TEXEL_UINT3,
                        scene->index_count * sizeof(uint32_t), scene->indices) &&
                 upload_id_blocks(gpu_scene);
     free(words);

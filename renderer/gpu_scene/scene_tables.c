@@ -17,6 +17,8 @@ static bool make_room(struct scene_tables *tables, enum scene_table table, uint6
         grown.capacity[i] = (uint32_t)capacity;
         total += capacity;
     }
+    if (!gpu_texels_fit(tables->gpu, GPU_TEXEL_UINT4, total * TEXEL_BYTES))
+        return false;
     grown.buffer = gpu_buffer_create(tables->gpu, "scene_tables", GPU_BUFFER_STATIC,
                                      total * TEXEL_BYTES, NULL);
     if (!grown.buffer)

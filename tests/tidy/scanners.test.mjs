@@ -13,6 +13,7 @@ import { findBanned, judgeBanned, wordsOf } from './identifiers.mjs';
 import { findForeignGlCalls, findIncludes, judgeIncludes, judgeLayers } from './includes.mjs';
 import { readJsWords } from './js_words.mjs';
 import { findExcesses, judgeExcesses } from './lengths.mjs';
+import { findReadBlocks, judgeReadBlocks } from './storage_reads.mjs';
 
 const file = (path, text) => ({ path, text, language: languageOf(path) });
 const functionsOf = (text, language) => readStructure(tokenize(text), language).functions;
@@ -342,5 +343,31 @@ describe('conditional includes', () => {
       '#include "lib/b.glsl"\n#if A\n#include "lib/a.glsl"\n#endif\n',
     );
     assert.deepEqual(judgeConditionalIncludes([...lib, file]), []);
+  });
+});
+
+describe('storage blocks', () => {
+  const shader = {
+    path: 'shaders/x/x.comp',
+    language: 'GLSL',
+    text:
+      'layout(std430, binding = BIND_A) writeonly buffer a_storage\n{\n    uint a[];\n};\n' +
+      'layout(std430, binding = BIND_B) readonly buffer b_storage\n{\n    uint b[];\n};\n',
+  };
+
+  test('that are read are found', () => {
+    const found = findReadBlocks([shader]);
+    assert.deepEqual(found, [{ path: 'shaders/x/x.comp', block: 'b_storage' }]);
+    assert.deepEqual(judgeReadBlocks(found, {}), [
+      'shaders/x/x.comp: b_storage is not writeonly: read it by a buffer texture instead',
+    ]);
+  });
+
+  test('may be listed, and the list may only shrink', () => {
+    const found = findReadBlocks([shader]);
+    const listed = { 'shaders/x/x.comp': { b_storage: 'atomics', a_storage: 'no longer' } };
+    assert.deepEqual(judgeReadBlocks(found, listed), [
+      'shaders/x/x.comp: a_storage is only written: take it off the list',
+    ]);
   });
 });

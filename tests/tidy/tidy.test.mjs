@@ -14,6 +14,7 @@ import { findBanned, judgeBanned } from './identifiers.mjs';
 import { findForeignGlCalls, findIncludes, judgeIncludes, judgeLayers } from './includes.mjs';
 import { LAYERS, UPWARD } from './layers.mjs';
 import { findExcesses, judgeExcesses } from './lengths.mjs';
+import { READ_BLOCKS, findReadBlocks, judgeReadBlocks } from './storage_reads.mjs';
 import { BANNED } from './words.mjs';
 
 const sources = readSources();
@@ -48,6 +49,11 @@ test('folders include what lies below them', () => {
 
 test('shaders include nothing under a condition that others would miss', () => {
   assertNone(judgeConditionalIncludes(sources.filter(({ language }) => language === 'GLSL')));
+});
+
+test('shaders read storage blocks only where they must', () => {
+  const shaders = sources.filter(({ language }) => language === 'GLSL');
+  assertNone(judgeReadBlocks(findReadBlocks(shaders), READ_BLOCKS));
 });
 
 test('renderer/gpu alone calls GL and EGL', () => {

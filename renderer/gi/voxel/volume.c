@@ -36,6 +36,8 @@ static void free_pools(struct voxel_volume *volume)
 
 static struct gpu_buffer *make(struct voxel_volume *volume, const char *label, size_t words)
 {
+    if (!gpu_texels_fit(volume->gpu, GPU_TEXEL_UINT, words * 4))
+        return NULL;
     return gpu_buffer_create(volume->gpu, label, GPU_BUFFER_STATIC, words * 4, NULL);
 }
 
