@@ -137,8 +137,12 @@ void voxel_volume_destroy(struct voxel_volume **volume);
 bool voxel_volume_update(struct voxel_volume *volume, const struct gpu_scene *gpu_scene,
                          const float eye[3]);
 
-// Part of the above, in gi/voxel_work.c: regions, batches of triangles that may overlap them, and
-// the surface table.
+// Part of the above, in gi/voxel/pool_estimate.c: surfels that the levels will hold, about. Cost:
+// linear in the triangles.
+double voxel_estimate_surfels(const struct voxel_volume *volume, const struct gpu_scene *gpu_scene);
+
+// Part of the above, in gi/voxel/voxel_work.c: regions, batches of triangles that may overlap them,
+// and the surface table.
 bool voxel_volume_prepare_work(struct voxel_volume *volume, const struct gpu_scene *gpu_scene);
 
 // After voxelization: whether the pools were large enough. If not, they have been enlarged and
