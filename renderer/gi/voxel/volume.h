@@ -11,6 +11,10 @@
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/settings.h"
 
+// Where the number of bounces is limited: whether the cache holds the last one, too. Else pixels
+// gather it themselves, and would show one too many.
+enum voxel_last_bounce { LAST_BOUNCE_ANY, LAST_BOUNCE_GATHERED, LAST_BOUNCE_CACHED };
+
 struct voxel_volume_params {
     enum gi_method method; // GI_METHOD_CLIPMAP or GI_METHOD_GRID
     uint32_t edge;         // voxels along an edge, a power of two
@@ -18,9 +22,7 @@ struct voxel_volume_params {
     enum voxel_directions directions;
     uint32_t cache_cones; // per voxel face
     bool colors;          // surfels store colours besides their material
-    // Where the number of bounces is limited: the cache holds the last one, too. Else pixels gather
-    // it themselves, and would show one too many.
-    bool last_bounce;
+    enum voxel_last_bounce last_bounce;
 };
 
 // Number of levels of a clipmap with these parameters: the coarsest covers the scene, the finest

@@ -93,7 +93,9 @@ static struct voxel_volume_params volume_params(const struct frame *frame)
         .directions = settings->voxel_directions,
         .cache_cones = cone_set_count(frame->plan->cache_cone_set),
         .colors = frame_has(frame, EFFECT_VOXEL_COLORS),
-        .last_bounce = settings->bounces > 0 && shows_cache(frame),
+        .last_bounce = settings->bounces == 0 ? LAST_BOUNCE_ANY
+                       : shows_cache(frame)   ? LAST_BOUNCE_CACHED
+                                              : LAST_BOUNCE_GATHERED,
     };
     enum voxel_resolution resolution = settings->voxel_resolution;
     if (resolution == VOXEL_RESOLUTION_AUTO)
@@ -108,7 +110,9 @@ static bool same_params(const struct voxel_volume_params *a, const struct voxel_
 {
     return a->method == b->method && a->edge == b->edge && a->clip_levels == b->clip_levels &&
            a->directions == b->directions && a->cache_cones == b->cache_cones &&
-           a->colors == b->colors && a->last_bounce == b->last_bounce;
+           a->colors == b->colors &&
+           (a->last_bounce == b->last_bounce || a->last_bounce == LAST_BOUNCE_ANY ||
+            b->last_bounce == LAST_BOUNCE_ANY);
 }
 
 // First volume of the frame's kind (shared, or owned by one view) that the view may draw with. Else
@@ -272,6 +276,8 @@ static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
     if (!volume || !voxel_volume_update(volume, frame->gpu_scene, frame->camera.eye))
         return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
     frame->volume = volume;
+    if (params.last_bounce != LAST_BOUNCE_ANY)
+        volume->params.last_bounce = params.last_bounce;
     fill_cones(frame, volume);
     volume->scale = radiance_scale(frame->gpu_scene, volume->scale);
     struct voxel_light_params light = {
