@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "renderer/gi/voxel/volume.h"
+#include "renderer/gi/gi_method.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/gpu_scene/gpu_scene.h"
@@ -104,18 +104,18 @@ static void add_view(struct checked_list *list, const struct view *view)
     add_buffer(list, "shadow_views", NOT_WRITTEN, view->shadow_views);
 }
 
-static void add_volume(struct checked_list *list, const struct voxel_volume *volume)
+static void add_gi(struct checked_list *list, const struct gi_findings *gi)
 {
-    add_texture(list, "voxel_radiance", RESOURCE_VOXEL_RADIANCE, volume->radiance, TEXTURE_VOLUME);
-    struct checked *faces = add(list, "irradiance_cache", RESOURCE_IRRADIANCE);
-    faces->buffer = volume->faces;
-    uint32_t light = 3u << FACE_LIGHT | 3u << FACE_DIRECT | 3u << FACE_SHOWN;
-    uint32_t hit_distances = ~((1u << FACE_WORDS) - 1); // of the cones
-    faces->floats = (struct resource_floats){
-        .record_words = FACE_RECORD_WORDS(volume->params.cache_cones),
-        .low_halves = light | hit_distances,
-        .high_halves = light,
-    };
+    for (uint32_t i = 0; i < gi->resource_count; i++) {
+        const struct gi_resource *found = &gi->resources[i];
+        if (!found->buffer && !found->volume)
+            continue;
+        struct checked *item = add(list, found->name, found->resource);
+        item->buffer = found->buffer;
+        item->floats = found->floats;
+        item->texture = found->volume;
+        item->kind = found->volume ? TEXTURE_VOLUME : TEXTURE_NONE;
+    }
 }
 
 static void add_scene(struct checked_list *list, const struct gpu_scene *gpu_scene)
@@ -183,8 +183,7 @@ bool finite_check_run(const struct finite_check *check, struct finite_report *ou
 {
     struct checked_list list = {0};
     add_view(&list, check->view);
-    if (check->volume)
-        add_volume(&list, check->volume);
+    add_gi(&list, check->gi);
     if (check->gpu_scene)
         add_scene(&list, check->gpu_scene);
     struct check_block found = {0};

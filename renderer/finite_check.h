@@ -5,16 +5,16 @@
 #include "renderer/error.h"
 #include "renderer/finite_report.h"
 
+struct gi_findings;
 struct gpu;
 struct gpu_scene;
 struct view;
-struct voxel_volume;
 
 struct finite_check {
     struct gpu *gpu;
     const struct gpu_scene *gpu_scene; // NULL for none
     const struct view *view;
-    const struct voxel_volume *volume; // volume of the view's newest frame; NULL for none
+    const struct gi_findings *gi; // of the view's newest frame
 };
 
 // Runs on the render thread and waits for the GPU.

@@ -11,8 +11,6 @@
 #include "renderer/finite_check.h"
 #include "renderer/frame/frame_block.h"
 #include "renderer/gi/gi.h"
-#include "renderer/gi/voxel/light_schedule.h"
-#include "renderer/gi/voxel/volume.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
 #include "renderer/gpu_scene/gpu_scene.h"
@@ -164,7 +162,7 @@ static bool plan_frame(struct renderer *renderer, struct frame *frame, struct er
     if (!gi_begin_frame(&renderer->gi, frame, out_error))
         return false;
     gi_release_unused(&renderer->gi, renderer->views, renderer->view_count);
-    inputs->gi = frame->volume ? &frame->gi : NULL;
+    inputs->gi = frame->gi.serial ? &frame->gi : NULL;
     if (!view_reserve(view, frame->gpu_scene, view->plan.quality.shadow_cascades))
         return error_set(out_error, "shadow maps and draws do not fit into GPU memory");
     shadow_map_fit_cascades(frame);
@@ -243,8 +241,9 @@ static void queue_readback(const struct frame *frame, double started_ms)
         slot->result.reference_noise =
             isfinite(live->progress.noise) ? (float)live->progress.noise : 0.0f;
     }
-    slot->volume_serial = view->volume_serial;
-    slot->generation = frame->volume && frame->gi.work.trace ? frame->volume->light.generation : 0;
+    slot->gi_method = view->gi_method;
+    slot->gi_serial = frame->gi.serial;
+    slot->gi_report_tag = frame->gi.report_tag;
     view->ring_next = (view->ring_next + 1) % RENDERER_FRAMES_IN_RING;
     view->ring_count++;
 }
@@ -320,23 +319,6 @@ void renderer_view_invalidate(struct view *view)
     view->history.drawn = false;
 }
 
-// Hands the counters that the frame read back to its volume.
-static void collect_light(struct renderer *renderer, struct view *view,
-                          const struct ring_frame *slot, const void *bytes)
-{
-    struct voxel_volume *volume = gi_find(&renderer->gi, slot->volume_serial);
-    if (!volume)
-        return;
-    struct voxel_light_report report;
-    memcpy(&report, bytes, sizeof(report));
-    volume->clamped = report.clamped;
-    if (slot->generation == 0)
-        return;
-    gpu_timer_poll(view->timer);
-    voxel_light_collect(volume, slot->generation, &report,
-                        gpu_timer_get_ms(view->timer, PASS_IRRADIANCE_CACHE));
-}
-
 bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wait,
                            struct frame_pixels *out_pixels)
 {
@@ -356,7 +338,7 @@ bool renderer_view_collect(struct renderer *renderer, struct view *view, bool wa
     memcpy(&found, bytes + size_bytes, sizeof(found));
     view->last_exposure =
         slot->fixed_exposure > 0.0f ? slot->fixed_exposure : found * slot->exposure_bias;
-    collect_light(renderer, view, slot, bytes + size_bytes + VIEW_EXPOSURE_BYTES);
+    gi_collect(&renderer->gi, view, slot, bytes + size_bytes + VIEW_EXPOSURE_BYTES);
     for (int i = 0; i < (shape.output == FRAME_OUTPUT_YCBCR ? 3 : 1); i++)
         slot->result.planes[i] = bytes + offsets[i];
     slot->result.frame_time_ms = gpu_clock_ms(renderer->gpu) - slot->started_ms;
@@ -417,14 +399,15 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
         memcpy(effect->reason, view->plan.effects.reasons[i], sizeof(effect->reason));
     }
     list_memory(renderer->gpu, statistics);
-    const struct voxel_volume *volume = gi_find(&renderer->gi, view->volume_serial);
+    struct gi_findings gi;
+    gi_inspect(&renderer->gi, view, &gi);
     const struct scene_rejects none = {0};
     const struct scene_rejects *rejects = renderer->scene ? &renderer->scene->rejects : &none;
     const struct reject_statistics found[] = {
         {"triangles_left_out", rejects->triangles},
         {"vertices_mended", rejects->vertices},
         {"parameters_clamped", rejects->parameters},
-        {"voxel_values_cut", volume ? volume->clamped : 0},
+        {"voxel_values_cut", gi.values_cut},
         {"lights_without_shadow", renderer->gpu_scene ? renderer->gpu_scene->counts.unshadowed : 0},
     };
     statistics->reject_count = sizeof(found) / sizeof(found[0]);
@@ -434,10 +417,10 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
 bool renderer_check_finite(struct renderer *renderer, const struct view *view,
                            struct finite_report *out_report, struct error *out_error)
 {
-    const struct finite_check check = {.gpu = renderer->gpu,
-                                       .gpu_scene = renderer->gpu_scene,
-                                       .view = view,
-                                       .volume = gi_find(&renderer->gi, view->volume_serial)};
+    struct gi_findings gi;
+    gi_inspect(&renderer->gi, view, &gi);
+    const struct finite_check check = {
+        .gpu = renderer->gpu, .gpu_scene = renderer->gpu_scene, .view = view, .gi = &gi};
     return finite_check_run(&check, out_report, out_error);
 }
 

@@ -18,8 +18,9 @@ struct frame {
     struct view_camera camera; // that of `params`, relative to the GPU scene's origin
     struct frame_inputs inputs;
     const struct frame_plan *plan;  // the view's
-    struct voxel_volume *volume;    // NULL if no effect needs voxels
-    struct gi_state gi;             // of the volume
+    struct voxel_volume *volume;    // of methods of voxels; NULL if no effect needs voxels
+    void *method_data;              // of any other method, which knows its type
+    struct gi_state gi;             // of the above
     const float *reference_picture; // 4 floats per pixel, shown instead; NULL for none
 };
 

@@ -44,9 +44,10 @@ struct voxel_light_work {
     bool smooth; // faces among their neighbours, once traced
 };
 
-// The method's volume, as the frame finds it.
+// What the method draws with, as the frame finds it.
 struct gi_state {
-    uint64_t serial; // tells volumes apart
+    uint64_t serial;     // tells volumes apart, or what else methods keep; 0 for none
+    uint32_t report_tag; // comes back to the method with what the frame reads back
     uint32_t level_count;
     uint32_t cell_level_count; // levels with cells of their own; the rest are mips
     bool light_converged;
@@ -85,7 +86,7 @@ struct frame_inputs {
     bool reference_shown;      // the method has made the image itself
     bool shadows_stale;        // a shadow map must be rendered
     bool transparent_in_view;  // transparent triangles are visible to the camera
-    const struct gi_state *gi; // NULL without voxels
+    const struct gi_state *gi; // NULL where the method draws with nothing
 };
 
 struct accumulation_plan {

@@ -14,7 +14,7 @@
 
 // Behind the pixels in a ring buffer: the automatic exposure.
 #define VIEW_EXPOSURE_BYTES 16u
-// Behind that: the volume's counters (struct voxel_light_report).
+// Behind that: what the method wants to know of the frame (struct gi_report).
 #define VIEW_REPORT_BYTES 24u
 
 struct ring_frame {
@@ -24,8 +24,9 @@ struct ring_frame {
     double started_ms;
     float fixed_exposure; // scale in use; 0: automatic
     float exposure_bias;
-    uint64_t volume_serial;
-    uint32_t generation; // of the cache, traced by this frame; 0 for none
+    enum gi_method gi_method; // that drew it
+    uint64_t gi_serial;       // gi_state.serial and report_tag of the frame
+    uint32_t gi_report_tag;
 };
 
 struct view {
@@ -60,7 +61,8 @@ struct view {
     uint32_t ring_count;
     bool collected; // the caller holds the oldest
 
-    uint64_t volume_serial; // volume of the newest frame; 0 for none
+    enum gi_method gi_method; // of the newest frame
+    uint64_t gi_serial;       // of what the method drew it with; 0 for nothing
 
     struct live_reference reference;
 

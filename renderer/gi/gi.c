@@ -6,11 +6,14 @@
 const struct gi_method_hooks gi_none = {0};
 
 const struct gi_method_hooks *const gi_methods[GI_METHOD_COUNT] = {
-    [GI_METHOD_NONE] = &gi_none,
-    [GI_METHOD_CLIPMAP] = &gi_voxels_clipmap,
-    [GI_METHOD_GRID] = &gi_voxels_grid,
-    [GI_METHOD_REFERENCE] = &gi_path_traced,
+#define HOOKS_OF(id, hooks) [GI_METHOD_##id] = &hooks,
+    GI_METHOD_ROWS(HOOKS_OF)
+#undef HOOKS_OF
 };
+
+#define ONE(id, hooks) +1
+_Static_assert(0 GI_METHOD_ROWS(ONE) == GI_METHOD_COUNT, "each method of enums.def has its row");
+#undef ONE
 
 static const struct gi_method_hooks *method_of(const struct frame *frame)
 {
@@ -29,8 +32,9 @@ void gi_finish(struct gi *gi)
 
 void gi_set_scene(struct gi *gi, struct scene *scene)
 {
-    gi_release_all(gi);
-    live_scene_finish(&gi->live_scene);
+    for (uint32_t i = 0; i < GI_METHOD_COUNT; i++)
+        if (gi_methods[i]->release)
+            gi_methods[i]->release(gi);
     gi->scene = scene;
     gi->scene_number++;
 }
@@ -49,11 +53,13 @@ bool gi_begin_frame(struct gi *gi, struct frame *frame, struct error *out_error)
 {
     const struct gi_method_hooks *method = method_of(frame);
     frame->volume = NULL;
+    frame->method_data = NULL;
     frame->gi = (struct gi_state){0};
-    frame->view->volume_serial = 0;
+    frame->view->gi_method = frame->params->settings.gi_method;
+    frame->view->gi_serial = 0;
     if (method->begin && !method->begin(gi, frame, out_error))
         return false;
-    frame->view->volume_serial = frame->gi.serial;
+    frame->view->gi_serial = frame->gi.serial;
     return true;
 }
 
@@ -68,4 +74,28 @@ float gi_convergence(const struct frame *frame)
 {
     const struct gi_method_hooks *method = method_of(frame);
     return method->convergence ? method->convergence(frame) : 1.0f;
+}
+
+void gi_collect(struct gi *gi, struct view *view, const struct ring_frame *slot, const void *bytes)
+{
+    const struct gi_method_hooks *method = gi_methods[slot->gi_method];
+    const struct gi_report report = {
+        .view = view, .serial = slot->gi_serial, .tag = slot->gi_report_tag, .bytes = bytes};
+    if (method->collect && report.serial != 0)
+        method->collect(gi, &report);
+}
+
+void gi_inspect(const struct gi *gi, const struct view *view, struct gi_findings *out_findings)
+{
+    const struct gi_method_hooks *method = gi_methods[view->gi_method];
+    *out_findings = (struct gi_findings){0};
+    if (method->inspect && view->gi_serial != 0)
+        method->inspect(gi, view->gi_serial, out_findings);
+}
+
+void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count)
+{
+    for (uint32_t i = 0; i < GI_METHOD_COUNT; i++)
+        if (gi_methods[i]->release_unused)
+            gi_methods[i]->release_unused(gi, views, view_count);
 }

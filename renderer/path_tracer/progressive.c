@@ -39,6 +39,16 @@ void live_scene_finish(struct live_scene *scene)
     *scene = (struct live_scene){0};
 }
 
+bool live_scene_is_building(const struct live_scene *scene)
+{
+    return scene->builds && __atomic_load_n(&scene->built, __ATOMIC_ACQUIRE) == 0;
+}
+
+bool live_reference_is_used(const struct live_reference *live)
+{
+    return live->params.scene != NULL;
+}
+
 void live_reference_finish(struct live_reference *live)
 {
     if (live->reference)
@@ -70,7 +80,7 @@ static bool has_snapshot(struct live_scene *scene, const struct live_params *par
                          struct error *out_error)
 {
     if (scene->builds) {
-        if (__atomic_load_n(&scene->built, __ATOMIC_ACQUIRE) == 0)
+        if (live_scene_is_building(scene))
             return false;
         pthread_join(scene->builder, NULL);
         scene->builds = false;

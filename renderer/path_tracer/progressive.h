@@ -25,6 +25,9 @@ struct live_scene {
 // Waits for the builder, if any.
 void live_scene_finish(struct live_scene *scene);
 
+// Whether live_scene_finish() would wait.
+bool live_scene_is_building(const struct live_scene *scene);
+
 // What a view shows.
 struct live_params {
     const struct scene *scene;
@@ -49,6 +52,9 @@ struct live_reference {
 };
 
 void live_reference_finish(struct live_reference *live);
+
+// Whether live_reference_update() has been called since.
+bool live_reference_is_used(const struct live_reference *live);
 
 enum live_state {
     LIVE_WAITING,  // nothing to show yet

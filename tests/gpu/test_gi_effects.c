@@ -81,6 +81,25 @@ static void stage_finish(struct stage *stage)
     scene_destroy(&stage->scene);
 }
 
+// Likewise, one frame of many, if there is anything to draw.
+static void stage_draw_once(struct stage *stage)
+{
+    struct test_picture picture = {0};
+    assert_int_not_equal(gi_draw_once(stage->renderer, stage->view, &stage->params, &picture),
+                         RENDER_FAILED);
+    gi_picture_finish(&picture);
+    renderer_view_get_statistics(stage->renderer, stage->view, &stage->statistics);
+}
+
+// GPU memory that methods keep.
+static uint64_t gi_bytes(const struct stage *stage)
+{
+    for (uint32_t i = 0; i < stage->statistics.memory_count; i++)
+        if (strcmp(stage->statistics.memory[i].name, "gi") == 0)
+            return stage->statistics.memory[i].bytes;
+    return 0;
+}
+
 static uint32_t effects_on(struct gi_report *report, const struct stage *stage)
 {
     uint32_t bits = 0;
@@ -282,8 +301,39 @@ static void test_switching_off_frees_memory(void **state)
         stage_draw(&stage);
         check_effects(&report, &stage, "switched off", 0, 0);
         check_memory_freed(&report, &stage, &first, gi_method_names[gi_proved_methods[m]]);
+        gi_check(&report, gi_bytes(&stage) == 0, "%s to none: methods keep %llu bytes",
+                 gi_method_names[gi_proved_methods[m]], (unsigned long long)gi_bytes(&stage));
         stage_finish(&stage);
     }
+    gi_report_finish(&report);
+}
+
+// What the method before kept for the view goes when another draws it, whichever it is.
+static void test_switching_methods_frees_memory(void **state)
+{
+    (void)state;
+    struct gi_report report = {0};
+    struct stage stage;
+    stage_init(&stage, lit_square_scene(0.5f, 0.0f), GI_METHOD_NONE);
+    uint64_t bytes[GI_METHOD_COUNT];
+    for (uint32_t from = 0; from < GI_METHOD_COUNT; from++)
+        for (uint32_t to = 0; to < GI_METHOD_COUNT; to++) {
+            stage.params.settings.gi_method = (enum gi_method)from;
+            stage_draw_once(&stage);
+            if (to == 0)
+                bytes[from] = gi_bytes(&stage);
+            gi_check(&report, gi_bytes(&stage) == bytes[from],
+                     "%s: %llu bytes, whatever was drawn before (%llu at first)",
+                     gi_method_names[from], (unsigned long long)gi_bytes(&stage),
+                     (unsigned long long)bytes[from]);
+            stage.params.settings.gi_method = (enum gi_method)to;
+            stage_draw_once(&stage);
+        }
+    gi_check(&report, bytes[GI_METHOD_NONE] == 0, "none keeps nothing");
+    for (uint32_t m = 0; m < GI_PROVED_METHODS; m++)
+        gi_check(&report, bytes[gi_proved_methods[m]] > 0, "%s keeps something",
+                 gi_method_names[gi_proved_methods[m]]);
+    stage_finish(&stage);
     gi_report_finish(&report);
 }
 
@@ -432,6 +482,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_each_thing_turns_on_its_effect),
         cmocka_unit_test(test_switching_off_frees_memory),
+        cmocka_unit_test(test_switching_methods_frees_memory),
         cmocka_unit_test(test_settings_turn_effects_off),
         cmocka_unit_test(test_unlit_scenes_run_no_light),
         cmocka_unit_test(test_black_scenes_bounce_nothing),

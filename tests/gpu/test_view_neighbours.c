@@ -9,13 +9,13 @@
 
 #include <cmocka.h>
 
-#include "renderer/gi/gi.h"
+#include "renderer/gi/voxel/volume.h"
 #include "support_gi.h"
 #include "support_gi_scenes.h"
 
 #define WIDTH     64u
 #define HEIGHT    36u
-#define MANY      (GI_MAX_SHARED_VOLUMES + 2u)
+#define MANY      (VOXEL_MAX_SHARED_VOLUMES + 2u)
 #define EYE_STEPS 6u
 
 static struct scene *show(const char *name)
@@ -110,7 +110,7 @@ static void test_many_views(void **state)
     // Views that must not share a grid are refused in words; others are not.
     params.own_voxels = true;
     for (uint32_t i = 0; i < MANY; i++) {
-        bool fits = i < GI_MAX_OWN_VOLUMES;
+        bool fits = i < VOXEL_MAX_OWN_VOLUMES;
         enum render_result result = renderer_view_draw(renderer, views[i], &params, &error);
         assert_int_equal(result, fits ? RENDER_DRAWN : RENDER_FAILED);
         if (!fits)

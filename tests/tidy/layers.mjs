@@ -2,6 +2,8 @@
 // lists: single headers, or folders. A listed folder does not stand for folders inside it that have
 // rows of their own.
 
+import { readdirSync } from 'node:fs';
+
 /** @typedef {{ folder: string, may: string[], why: string }} Layer */
 /**
  * @typedef {{ from: string, to: string, why: string }} Arrow a file that includes a header against
@@ -17,6 +19,11 @@ const SETTINGS = ['renderer/settings.h', 'renderer/parameter_types.h'];
 
 /** What users of the renderer may include besides renderer.h: plain data and pure functions. */
 const API = ['renderer/renderer.h', 'renderer/camera.h', 'renderer/metrics', ...BASE, ...SETTINGS];
+
+/** The methods of global illumination: each folder of renderer/gi. */
+const METHODS = readdirSync(new URL('../../renderer/gi', import.meta.url), { withFileTypes: true })
+  .filter((entry) => entry.isDirectory())
+  .map(({ name }) => `renderer/gi/${name}`);
 
 /** @type {Layer[]} */
 export const LAYERS = [
@@ -97,15 +104,16 @@ export const LAYERS = [
   },
   {
     folder: 'renderer/gi',
-    may: ['renderer/frame', 'renderer/path_tracer', 'renderer/scene', ...BASE, ...SETTINGS],
+    may: ['renderer/frame', 'renderer/scene', ...BASE, ...SETTINGS],
     why: 'the seam: the methods, and what a renderer keeps for them',
   },
-  ...['voxel', 'path_traced'].map((method) => ({
-    folder: `renderer/gi/${method}`,
+  ...METHODS.map((folder) => ({
+    folder,
     may: [
       'renderer/gi',
       'renderer/frame',
       'renderer/gpu_scene',
+      'renderer/path_tracer',
       'renderer/gpu',
       'renderer/scene',
       'shaders/shared',
@@ -118,7 +126,7 @@ export const LAYERS = [
     folder: 'renderer/passes',
     may: [
       'renderer/gi',
-      'renderer/gi/voxel',
+      ...METHODS,
       'renderer/frame',
       'renderer/gpu_scene',
       'renderer/gpu',
@@ -134,7 +142,6 @@ export const LAYERS = [
     may: [
       'renderer/passes',
       'renderer/gi',
-      'renderer/gi/voxel',
       'renderer/frame',
       'renderer/gpu_scene',
       'renderer/path_tracer',

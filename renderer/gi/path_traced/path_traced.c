@@ -1,13 +1,25 @@
 // The reference as a method: paths that are traced on the CPU (renderer/path_tracer/) while nothing
 // moves. Until every pixel has a sample, the frame is drawn by direct light.
+#include <stdlib.h>
+
 #include "renderer/frame/frame.h"
 #include "renderer/frame/view.h"
 #include "renderer/gi/gi.h"
 #include "renderer/log.h"
+#include "renderer/path_tracer/progressive.h"
 
 static bool shows_reference(const struct frame_params *params)
 {
     return (params->debug_view == DEBUG_VIEW_FINAL || params->debug_view == DEBUG_VIEW_DIRECT);
+}
+
+// The snapshot that all views' references trace; NULL when out of memory.
+static struct live_scene *keep_scene(struct gi *gi)
+{
+    void **kept = &gi->kept[GI_METHOD_REFERENCE];
+    if (!*kept)
+        *kept = calloc(1, sizeof(struct live_scene));
+    return *kept;
 }
 
 static enum gi_readiness prepare(struct gi *gi, struct frame *frame, bool same)
@@ -30,8 +42,12 @@ static enum gi_readiness prepare(struct gi *gi, struct frame *frame, bool same)
         .direct_only = params->debug_view == DEBUG_VIEW_DIRECT,
     };
     struct error error = {""};
-    enum live_state state =
-        live_reference_update(&view->reference, &gi->live_scene, &wanted, &error);
+    struct live_scene *scene = keep_scene(gi);
+    enum live_state state = LIVE_WAITING;
+    if (scene)
+        state = live_reference_update(&view->reference, scene, &wanted, &error);
+    else
+        error_set(&error, "out of memory");
     if (error.message[0])
         log_write(LOG_ERROR, "reference_failed reason=\"%s\"", error.message);
     if (same && state == LIVE_FINISHED)
@@ -56,9 +72,31 @@ static void leave(struct gi *gi, struct frame *frame)
     live_reference_finish(&frame->view->reference);
 }
 
+static void release(struct gi *gi)
+{
+    struct live_scene *scene = gi->kept[GI_METHOD_REFERENCE];
+    if (scene)
+        live_scene_finish(scene);
+    free(scene);
+    gi->kept[GI_METHOD_REFERENCE] = NULL;
+}
+
+// A snapshot that is being built stays until a later frame: waiting for it would take seconds.
+static void release_unused(struct gi *gi, struct view *const *views, uint32_t view_count)
+{
+    const struct live_scene *scene = gi->kept[GI_METHOD_REFERENCE];
+    bool used = !scene || live_scene_is_building(scene);
+    for (uint32_t i = 0; i < view_count; i++)
+        used = used || live_reference_is_used(&views[i]->reference);
+    if (!used)
+        release(gi);
+}
+
 const struct gi_method_hooks gi_path_traced = {
     .capabilities = GI_IS_REFERENCE,
     .prepare = prepare,
     .convergence = convergence,
     .leave = leave,
+    .release_unused = release_unused,
+    .release = release,
 };

@@ -11,6 +11,11 @@
 #include "renderer/gpu_scene/gpu_scene.h"
 #include "renderer/settings.h"
 
+// A clipmap follows a camera; views beyond this number of volumes share one.
+#define VOXEL_MAX_SHARED_VOLUMES 6u
+// For views whose settings differ from the others' (frame_params.own_voxels).
+#define VOXEL_MAX_OWN_VOLUMES 6u
+
 // Where the number of bounces is limited: whether the cache holds the last one, too. Else pixels
 // gather it themselves, and would show one too many.
 enum voxel_last_bounce { LAST_BOUNCE_ANY, LAST_BOUNCE_GATHERED, LAST_BOUNCE_CACHED };

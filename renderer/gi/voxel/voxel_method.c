@@ -2,11 +2,11 @@
 #include "renderer/gi/gi.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "renderer/gi/voxel/cones.h"
 #include "renderer/frame/view.h"
+#include "renderer/gi/voxel/cones.h"
 #include "renderer/gi/voxel/light_schedule.h"
 #include "renderer/gi/voxel/volume.h"
 
@@ -22,33 +22,51 @@
 #define START_VOXELS           1.0f
 #define START_VOXELS_ISOTROPIC 2.0f
 
-void gi_release_all(struct gi *gi)
+// The volumes of both methods: one scene has few, and a view that changes its method takes the
+// place of its former one.
+struct kept_volumes {
+    uint32_t count;
+    struct kept_volume {
+        struct voxel_volume *volume;
+        const struct view *owner; // whose camera the clipmap follows; NULL for a shared grid
+        bool own;                 // used by its owner only
+        uint64_t serial;
+    } items[VOXEL_MAX_SHARED_VOLUMES + VOXEL_MAX_OWN_VOLUMES];
+};
+
+#define KEPT GI_METHOD_CLIPMAP // whichever of the two methods made them
+
+static void release(struct gi *gi)
 {
-    for (uint32_t i = 0; i < gi->volume_count; i++)
-        voxel_volume_destroy(&gi->volumes[i].volume);
-    gi->volume_count = 0;
+    struct kept_volumes *kept = gi->kept[KEPT];
+    for (uint32_t i = 0; kept && i < kept->count; i++)
+        voxel_volume_destroy(&kept->items[i].volume);
+    free(kept);
+    gi->kept[KEPT] = NULL;
 }
 
-void gi_release_unused(struct gi *gi, struct view *const *views, uint32_t view_count)
+static void release_unused(struct gi *gi, struct view *const *views, uint32_t view_count)
 {
-    for (uint32_t i = 0; i < gi->volume_count;) {
+    struct kept_volumes *kept = gi->kept[KEPT];
+    for (uint32_t i = 0; kept && i < kept->count;) {
         bool used = false;
         for (uint32_t j = 0; j < view_count; j++)
-            used = used || views[j]->volume_serial == gi->volumes[i].serial;
+            used = used || views[j]->gi_serial == kept->items[i].serial;
         if (used) {
             i++;
             continue;
         }
-        voxel_volume_destroy(&gi->volumes[i].volume);
-        gi->volumes[i] = gi->volumes[--gi->volume_count];
+        voxel_volume_destroy(&kept->items[i].volume);
+        kept->items[i] = kept->items[--kept->count];
     }
 }
 
-struct voxel_volume *gi_find(const struct gi *gi, uint64_t serial)
+static struct voxel_volume *find_by_serial(const struct gi *gi, uint64_t serial)
 {
-    for (uint32_t i = 0; i < gi->volume_count; i++)
-        if (gi->volumes[i].serial == serial)
-            return gi->volumes[i].volume;
+    const struct kept_volumes *kept = gi->kept[KEPT];
+    for (uint32_t i = 0; kept && i < kept->count; i++)
+        if (kept->items[i].serial == serial)
+            return kept->items[i].volume;
     return NULL;
 }
 
@@ -117,13 +135,13 @@ static bool same_params(const struct voxel_volume_params *a, const struct voxel_
 
 // First volume of the frame's kind (shared, or owned by one view) that the view may draw with. Else
 // `out_shared` is another view's clipmap, if any.
-static struct gi_volume *find_fitting(struct gi *gi, const struct frame *frame,
-                                      const struct voxel_volume_params *params,
-                                      struct gi_volume **out_shared)
+static struct kept_volume *find_fitting(struct kept_volumes *kept, const struct frame *frame,
+                                        const struct voxel_volume_params *params,
+                                        struct kept_volume **out_shared)
 {
     bool own = frame->params->own_voxels;
-    for (uint32_t i = 0; i < gi->volume_count; i++) {
-        struct gi_volume *it = &gi->volumes[i];
+    for (uint32_t i = 0; i < kept->count; i++) {
+        struct kept_volume *it = &kept->items[i];
         if (it->own != own || !same_params(&it->volume->params, params))
             continue;
         if (!it->owner || it->owner == frame->view)
@@ -136,13 +154,13 @@ static struct gi_volume *find_fitting(struct gi *gi, const struct frame *frame,
 
 // A volume of the frame's kind that can be replaced: the view's own, or one whose settings are no
 // longer in use. NULL for none.
-static struct gi_volume *find_replaceable(struct gi *gi, const struct frame *frame,
-                                          const struct voxel_volume_params *params)
+static struct kept_volume *find_replaceable(struct kept_volumes *kept, const struct frame *frame,
+                                            const struct voxel_volume_params *params)
 {
     bool own = frame->params->own_voxels;
-    struct gi_volume *stale = NULL;
-    for (uint32_t i = 0; i < gi->volume_count; i++) {
-        struct gi_volume *it = &gi->volumes[i];
+    struct kept_volume *stale = NULL;
+    for (uint32_t i = 0; i < kept->count; i++) {
+        struct kept_volume *it = &kept->items[i];
         if (it->own != own || same_params(&it->volume->params, params))
             continue;
         if (it->owner == frame->view)
@@ -153,42 +171,47 @@ static struct gi_volume *find_replaceable(struct gi *gi, const struct frame *fra
     return stale;
 }
 
-static uint32_t count_volumes(const struct gi *gi, bool own)
+static uint32_t count_volumes(const struct kept_volumes *kept, bool own)
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < gi->volume_count; i++)
-        count += gi->volumes[i].own == own;
+    for (uint32_t i = 0; i < kept->count; i++)
+        count += kept->items[i].own == own;
     return count;
 }
 
 // Finds or creates the volume to draw with: the view's own clipmap, or the grid; another view's
 // clipmap when there are too many. NULL when memory runs out or too many views own voxels.
-static struct gi_volume *find_volume(struct gi *gi, const struct frame *frame,
-                                     const struct voxel_volume_params *params)
+static struct kept_volume *find_volume(struct gi *gi, const struct frame *frame,
+                                       const struct voxel_volume_params *params)
 {
     bool own = frame->params->own_voxels;
-    struct gi_volume *shared = NULL, *fitting = find_fitting(gi, frame, params, &shared);
+    struct kept_volumes *kept = gi->kept[KEPT];
+    if (!kept)
+        kept = gi->kept[KEPT] = calloc(1, sizeof(*kept));
+    if (!kept)
+        return NULL;
+    struct kept_volume *shared = NULL, *fitting = find_fitting(kept, frame, params, &shared);
     if (fitting)
         return fitting;
-    struct gi_volume *slot = NULL;
-    if (count_volumes(gi, own) == (own ? GI_MAX_OWN_VOLUMES : GI_MAX_SHARED_VOLUMES)) {
-        slot = find_replaceable(gi, frame, params);
+    struct kept_volume *slot = NULL;
+    if (count_volumes(kept, own) == (own ? VOXEL_MAX_OWN_VOLUMES : VOXEL_MAX_SHARED_VOLUMES)) {
+        slot = find_replaceable(kept, frame, params);
         if (shared && (!slot || slot->owner != frame->view))
             return shared;
         if (!slot)
             return NULL;
         voxel_volume_destroy(&slot->volume);
-        *slot = gi->volumes[--gi->volume_count];
+        *slot = kept->items[--kept->count];
     }
     struct voxel_volume *volume = voxel_volume_create(gi->gpu, params);
     if (!volume)
         return NULL;
     bool owned = own || params->method == GI_METHOD_CLIPMAP;
-    slot = &gi->volumes[gi->volume_count++];
-    *slot = (struct gi_volume){.volume = volume,
-                               .owner = owned ? frame->view : NULL,
-                               .own = own,
-                               .serial = gi->next_serial++};
+    slot = &kept->items[kept->count++];
+    *slot = (struct kept_volume){.volume = volume,
+                                 .owner = owned ? frame->view : NULL,
+                                 .own = own,
+                                 .serial = gi->next_serial++};
     return slot;
 }
 
@@ -256,7 +279,8 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
 // Whether the frame has no volume because other views use up all own volumes.
 static bool too_many_own(const struct gi *gi, const struct frame *frame)
 {
-    return frame->params->own_voxels && count_volumes(gi, true) == GI_MAX_OWN_VOLUMES;
+    const struct kept_volumes *kept = gi->kept[KEPT];
+    return frame->params->own_voxels && kept && count_volumes(kept, true) == VOXEL_MAX_OWN_VOLUMES;
 }
 
 static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
@@ -265,14 +289,14 @@ static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
         return true;
     const struct render_settings *settings = &frame->params->settings;
     struct voxel_volume_params params = volume_params(frame);
-    struct gi_volume *found = find_volume(gi, frame, &params);
+    struct kept_volume *found = find_volume(gi, frame, &params);
     struct voxel_volume *volume = found ? found->volume : NULL;
     if (volume && settings->voxelize_every_frame && params.method == GI_METHOD_GRID)
         volume->everything = true;
     if (!volume && too_many_own(gi, frame))
         return error_set(out_error,
                          "%u views have settings of their own; no more of them can have voxels",
-                         GI_MAX_OWN_VOLUMES);
+                         VOXEL_MAX_OWN_VOLUMES);
     if (!volume || !voxel_volume_update(volume, frame->gpu_scene, frame->camera.eye))
         return error_set(out_error, "voxels of %u^3 do not fit into GPU memory", params.edge);
     frame->volume = volume;
@@ -295,6 +319,7 @@ static bool begin(struct gi *gi, struct frame *frame, struct error *out_error)
                                   .level_count = volume->level_count,
                                   .cell_level_count = volume->cell_level_count};
     voxel_light_begin(volume, &light, &frame->gi.work);
+    frame->gi.report_tag = frame->gi.work.trace ? volume->light.generation : 0;
     frame->gi.light_converged = volume->light.converged;
     frame->gi.light_version = volume->light.version;
     return true;
@@ -325,7 +350,48 @@ static float convergence(const struct frame *frame)
     return fminf(0.9f + 0.1f * averaged, 1.0f);
 }
 
-#define VOXEL_HOOKS .begin = begin, .bind = bind, .convergence = convergence
+// The tag is the generation of the cache that the frame has traced; 0 for none.
+static void collect(struct gi *gi, const struct gi_report *report)
+{
+    struct voxel_volume *volume = find_by_serial(gi, report->serial);
+    if (!volume)
+        return;
+    struct voxel_light_report light;
+    _Static_assert(sizeof(light) == VIEW_REPORT_BYTES, "a frame reads all of it back");
+    memcpy(&light, report->bytes, sizeof(light));
+    volume->clamped = light.clamped;
+    if (report->tag == 0)
+        return;
+    gpu_timer_poll(report->view->timer);
+    voxel_light_collect(volume, report->tag, &light,
+                        gpu_timer_get_ms(report->view->timer, PASS_IRRADIANCE_CACHE));
+}
+
+static void inspect(const struct gi *gi, uint64_t serial, struct gi_findings *out_findings)
+{
+    const struct voxel_volume *volume = find_by_serial(gi, serial);
+    if (!volume)
+        return;
+    uint32_t light = 3u << FACE_LIGHT | 3u << FACE_DIRECT | 3u << FACE_SHOWN;
+    uint32_t hit_distances = ~((1u << FACE_WORDS) - 1); // of the cones
+    *out_findings = (struct gi_findings){
+        .values_cut = volume->clamped,
+        .resource_count = 2,
+        .resources = {{.name = "voxel_radiance",
+                       .resource = RESOURCE_VOXEL_RADIANCE,
+                       .volume = volume->radiance},
+                      {.name = "irradiance_cache",
+                       .resource = RESOURCE_IRRADIANCE,
+                       .buffer = volume->faces,
+                       .floats = {.record_words = FACE_RECORD_WORDS(volume->params.cache_cones),
+                                  .low_halves = light | hit_distances,
+                                  .high_halves = light}}},
+    };
+}
+
+#define VOXEL_HOOKS                                                                                \
+    .begin = begin, .bind = bind, .convergence = convergence, .collect = collect,                  \
+    .inspect = inspect, .release_unused = release_unused, .release = release
 
 const struct gi_method_hooks gi_voxels_clipmap = {
     .capabilities = GI_HAS_CONES | GI_HAS_CLIP_LEVELS,
