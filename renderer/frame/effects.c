@@ -73,6 +73,14 @@ static void choose(struct decision *decision, bool on, bool forceable, const cha
     decision->reason = on ? because : missing;
 }
 
+static const char *why_no_cones(const struct frame_inputs *in)
+{
+    if (in->params->settings.gi_method == GI_METHOD_NONE)
+        return "no global illumination chosen";
+    return in->gi_capabilities & GI_IS_REFERENCE ? "the method is reference"
+                                                 : "the method has no voxels";
+}
+
 #define COUNTED(number, noun)              count(decision, number, noun);
 #define CHOSEN(on, because, missing)       choose(decision, on, true, because, missing);
 #define NEVER_FORCED(on, because, missing) choose(decision, on, false, because, missing);
@@ -86,9 +94,7 @@ static void choose(struct decision *decision, bool on, bool forceable, const cha
     WITH_CONES(otherwise)
 #define WITH_CONES(otherwise)                                                                      \
     if (!(in->gi_capabilities & GI_HAS_CONES))                                                     \
-        choose(decision, false, false, "",                                                         \
-               in->gi_capabilities &GI_IS_REFERENCE ? "the method is reference"                    \
-                                                    : "no global illumination chosen");            \
+        choose(decision, false, false, "", why_no_cones(in));                                      \
     else                                                                                           \
         otherwise
 

@@ -90,7 +90,9 @@ const char *frame_plan_blank_reason(const struct frame_inputs *in)
 {
     if (!debug_view_needs_voxels(in->params->debug_view) || frame_plan_has_cones(in))
         return NULL;
-    return "plain grey: without global illumination there are no voxels to show";
+    return in->params->settings.gi_method == GI_METHOD_NONE
+               ? "plain grey: without global illumination there are no voxels to show"
+               : "plain grey: the method has no voxels to show";
 }
 
 bool frame_plan_has_cone_shadows(const struct frame_inputs *in, const struct frame_plan *plan)

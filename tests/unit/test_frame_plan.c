@@ -36,6 +36,14 @@ static void nothing_was_drawn(struct situation *it)
     it->history.drawn = false;
 }
 
+static void there_is_no_method(struct situation *it)
+{
+    camera_moves(it);
+    it->params.settings.gi_method = GI_METHOD_NONE;
+    it->inputs.gi_capabilities = 0;
+    it->inputs.gi = NULL;
+}
+
 static void a_change_invalidates_what_is_made_from_it(void **state)
 {
     (void)state;
@@ -148,16 +156,52 @@ static void effects_follow_the_scene_and_the_settings(void **state)
             assert_int_equal((plan.effects.bits & bit) != 0, number > 0);
             assert_true(plan.effects.reasons[rows[i].effect][0] != '\0');
         }
+}
+
+static void what_cones_draw_is_off_without_them(void **state)
+{
+    (void)state;
+    struct situation it;
+    struct frame_plan with, without, reference;
+    at_rest(&it);
+    it.params.settings.force_all_effects = true;
+    it.params.settings.ambient_occlusion = true;
+    it.inputs.scene.counts.sized_lights = 1;
+    frame_plan_make(&with, &it.inputs);
+    assert_int_equal(with.effects.bits, ((uint64_t)1 << EFFECT_COUNT) - 1);
+    there_is_no_method(&it);
+    frame_plan_make(&without, &it.inputs);
+    it.params.settings.gi_method = GI_METHOD_REFERENCE;
+    it.inputs.gi_capabilities = GI_IS_REFERENCE;
+    frame_plan_make(&reference, &it.inputs);
+    assert_int_equal(reference.effects.bits, without.effects.bits);
+    uint32_t indirect = with.effects.bits & ~without.effects.bits;
+    assert_true(indirect & EFFECT_BIT(EFFECT_INDIRECT_DIFFUSE));
+    assert_true(indirect & EFFECT_BIT(EFFECT_REFRACTION));
+    assert_true(without.effects.bits & EFFECT_BIT(EFFECT_TRANSPARENCY));
     for (int i = 0; i < EFFECT_COUNT; i++) {
-        at_rest(&it);
-        it.inputs.gi_capabilities = 0;
-        it.inputs.gi = NULL;
-        it.params.settings.force_all_effects = true;
-        frame_plan_make(&plan, &it.inputs);
-        bool indirect = i >= EFFECT_INDIRECT_DIFFUSE; // forced or not: there is nothing to trace
-        assert_int_equal((plan.effects.bits & EFFECT_BIT(i)) != 0,
-                         !indirect && i != EFFECT_AUTO_EXPOSURE ? 1 : i == EFFECT_AUTO_EXPOSURE);
+        if (!(indirect & EFFECT_BIT(i)))
+            continue;
+        // Forced or not: there is nothing to trace.
+        assert_string_equal(without.effects.reasons[i], "no global illumination chosen");
+        assert_string_equal(reference.effects.reasons[i], "the method is reference");
     }
+}
+
+static void a_method_without_voxels_is_told_from_none(void **state)
+{
+    (void)state;
+    struct situation it;
+    struct frame_plan plan;
+    at_rest(&it);
+    it.inputs.gi_capabilities = 0; // though it draws with something
+    it.params.debug_view = DEBUG_VIEW_VOXEL_NORMAL;
+    frame_plan_make(&plan, &it.inputs);
+    assert_string_equal(plan.effects.reasons[EFFECT_INDIRECT_DIFFUSE], "the method has no voxels");
+    assert_non_null(strstr(frame_plan_blank_reason(&it.inputs), "the method has no voxels"));
+    assert_false(frame_plan_has_cones(&it.inputs));
+    there_is_no_method(&it);
+    assert_non_null(strstr(frame_plan_blank_reason(&it.inputs), "without global illumination"));
 }
 
 static void nothing_stays_auto(void **state)
@@ -239,16 +283,10 @@ static void glass_is_out_of_view(struct situation *it)
     it->inputs.transparent_in_view = false;
 }
 
-static void there_is_no_method(struct situation *it)
-{
-    camera_moves(it);
-    it->inputs.gi_capabilities = 0;
-    it->inputs.gi = NULL;
-}
-
 static void a_reference_is_shown(struct situation *it)
 {
     there_is_no_method(it);
+    it->params.settings.gi_method = GI_METHOD_REFERENCE;
     it->inputs.gi_capabilities = GI_IS_REFERENCE;
     it->inputs.reference_shown = true;
 }
@@ -403,6 +441,8 @@ int main(void)
         cmocka_unit_test(a_change_invalidates_what_is_made_from_it),
         cmocka_unit_test(another_rendered_size_is_drawn_anew),
         cmocka_unit_test(effects_follow_the_scene_and_the_settings),
+        cmocka_unit_test(what_cones_draw_is_off_without_them),
+        cmocka_unit_test(a_method_without_voxels_is_told_from_none),
         cmocka_unit_test(nothing_stays_auto),
         cmocka_unit_test(passes_run_where_they_are_needed),
         cmocka_unit_test(buffers_take_memory_only_where_used),
