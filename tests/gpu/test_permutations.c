@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "renderer/gi/gi_method.h"
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/shader_source.h"
 #include "renderer/hash.h"
@@ -91,29 +92,28 @@ static void random_scene(struct scene_facts *scene)
     scene->second_uv_set = below(2);
 }
 
+// Each setting that is a choice; a switch differs from its default in one frame of four. Numbers
+// select no code but by being small.
 static void random_settings(struct render_settings *settings)
 {
     render_settings_init(settings);
-    settings->voxel_directions = (enum voxel_directions)below(2);
-    settings->gather_mode = (enum gather_mode)below(GATHER_COUNT);
-    settings->shading_model = (enum shading_model)below(SHADING_MODEL_COUNT);
-    settings->bounces = below(3);
-    settings->shadows = below(4) > 0;
-    settings->soft_shadows = below(4) > 0;
-    settings->indirect_specular = below(4) > 0;
-    settings->refraction = below(4) > 0;
-    settings->environment_light = below(4) > 0;
-    settings->ambient_occlusion = below(2);
-    settings->force_all_effects = below(8) == 0;
-    settings->exposure_mode = (enum exposure_mode)below(2);
+#define RANDOM_FLOAT      before
+#define RANDOM_INT        below(3)
+#define RANDOM_BOOL       (before != 0) != (below(4) == 0)
+#define RANDOM_ENUM(kind) (enum kind) below(sizeof(kind##_names) / sizeof(kind##_names[0]) - 1)
+#define PARAMETER(record, name, type, ...)                                                         \
+    {                                                                                              \
+        const float before = (float)settings->name;                                                \
+        (void)before;                                                                              \
+        settings->name = RANDOM_##type;                                                            \
+    }
+#include "protocol/parameters/settings.def"
+#undef PARAMETER
 }
 
 // A plan of a random frame. `out_in` stays valid until the next call.
 static void random_plan(struct frame_plan *plan, struct frame_inputs *out_in)
 {
-    static const uint32_t methods[] = {0, GI_IS_REFERENCE, GI_HAS_CONES,
-                                       GI_HAS_CONES | GI_HAS_CLIP_LEVELS,
-                                       GI_HAS_CONES | GI_HAS_CLIP_LEVELS};
     static struct frame_params params;
     static struct frame_history history;
     static const struct scene_revisions revisions;
@@ -142,13 +142,15 @@ static void random_plan(struct frame_plan *plan, struct frame_inputs *out_in)
                               .revisions = &revisions,
                               .history = &history,
                               .target_width = 64,
-                              .gi_capabilities = methods[below(5)],
+                              .gi_capabilities =
+                                  gi_methods[params.settings.gi_method]->capabilities,
                               .shadows_stale = below(2),
                               .transparent_in_view = below(2)};
     random_scene(&in.scene);
-    in.reference_shown = in.gi_capabilities == GI_IS_REFERENCE && below(2);
+    in.reference_shown = (in.gi_capabilities & GI_IS_REFERENCE) && below(2);
     frame_plan_make(plan, &in);
-    in.gi = plan->effects.calls_for_cones ? &gi : NULL;
+    bool has_cones = in.gi_capabilities & GI_HAS_CONES;
+    in.gi = plan->effects.calls_for_cones || (!has_cones && below(2)) ? &gi : NULL;
     frame_plan_make(plan, &in);
     *out_in = in;
 }
