@@ -20,7 +20,7 @@ static const char usage[] =
     "  --fov-y-deg D        vertical field of view in degrees, 0.1 to 179\n"
     "  --environment FILE   .hdr or .exr, an equirectangular image that lights the scene\n"
     "  --size WxH           1x1 to 4096x2160 (default 1280x720)\n"
-    "  --gi METHOD          method of global illumination: none, clipmap, grid or reference\n"
+    "  --gi METHOD          method of global illumination: @gi\n"
     "  --preset NAME        draft, interactive, high or final (default: final; with several\n"
     "                       frames: interactive)\n"
     "  --view VIEW          final, direct, albedo, normal, roughness, metallic, emission, depth,\n"

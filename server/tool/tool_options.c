@@ -240,6 +240,35 @@ static bool read_all(struct cli_parser *parser, int argc, char **argv, bool *out
     return true;
 }
 
+static const struct cli_option *find_choice(const struct cli_parser *parser, const char *text)
+{
+    for (uint32_t i = 0; i < parser->option_count; i++) {
+        const struct cli_option *option = &parser->options[i];
+        if (option->kind == CLI_OPTION_CHOICE &&
+            strncmp(text, option->name, strlen(option->name)) == 0)
+            return option;
+    }
+    return NULL;
+}
+
+static void print_usage(const struct cli_parser *parser)
+{
+    for (const char *at = parser->usage; *at; at++) {
+        const struct cli_option *option = *at == '@' ? find_choice(parser, at + 1) : NULL;
+        if (!option) {
+            putchar(*at);
+            continue;
+        }
+        for (uint32_t i = 0; i < option->name_count; i++)
+            printf("%s%s",
+                   i == 0                        ? ""
+                   : i + 1 == option->name_count ? " or "
+                                                 : ", ",
+                   option->names[i]);
+        at += strlen(option->name);
+    }
+}
+
 bool cli_parse(struct cli_parser *parser, int argc, char **argv, int *out_status)
 {
     struct error error = {""};
@@ -248,7 +277,7 @@ bool cli_parse(struct cli_parser *parser, int argc, char **argv, int *out_status
     if (!read_all(parser, argc, argv, &help, &error))
         *out_status = cli_fail(CLI_EXIT_USAGE, "%s", error.message);
     else if (help)
-        fputs(parser->usage, stdout);
+        print_usage(parser);
     return *out_status == 0 && !help;
 }
 

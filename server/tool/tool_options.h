@@ -40,7 +40,7 @@ struct cli_option {
 
 struct cli_parser {
     const char *command; // as in "bench natus"; NULL for a program without commands
-    const char *usage;   // what --help prints
+    const char *usage;   // what --help prints; "@gi" stands for what --gi may choose from
     uint32_t max_arguments;
 
     uint32_t option_count;
