@@ -5,7 +5,7 @@
 #include "renderer/import/gltf_import.hpp"
 
 extern "C" {
-#include "renderer/import/import_memory.h"
+#include "renderer/import/importers.h"
 #include "renderer/import/scene_load.h"
 }
 

@@ -29,7 +29,7 @@ typedef std::function<void(const uint8_t *bytes, size_t size)> import_work;
 void import_warn_once(import_job &job, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-// Does the work on a file, or on `size` bytes with `base_folder` as in import_memory.h. Lets no
+// Does the work on a file, or on `size` bytes with `base_folder` as in importers.h. Lets no
 // exception escape: returns the scene, which is the caller's, or NULL with an error that names
 // `kind` and the file.
 struct scene *import_from_file(import_job &job, const char *kind, const char *path,

@@ -9,7 +9,7 @@
 #include "renderer/import/obj_import.hpp"
 
 extern "C" {
-#include "renderer/import/import_memory.h"
+#include "renderer/import/importers.h"
 #include "renderer/import/scene_load.h"
 #include "renderer/scene/triangle_mesh.h"
 }

@@ -7,31 +7,36 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "renderer/import/importers.h"
+
 #define BUILTIN_PREFIX "builtin:"
 
 // One row per kind of file.
-static const struct importer {
-    const char *extension, *format;
-    struct scene *(*import)(const char *path, struct error *out_error);
-} importers[] = {
-    {".gltf", "glTF 2.0", scene_import_gltf},
-    {".glb", "glTF 2.0", scene_import_gltf},
-    {".obj", "Wavefront OBJ", scene_import_obj},
+static const struct importer importers[] = {
+    {".gltf", "glTF 2.0", scene_import_gltf, scene_import_gltf_memory},
+    {".glb", "glTF 2.0", scene_import_gltf, scene_import_gltf_memory},
+    {".obj", "Wavefront OBJ", scene_import_obj, scene_import_obj_memory},
 };
 
 #define IMPORTER_COUNT (sizeof(importers) / sizeof(importers[0]))
+
+const struct importer *importer_at(uint32_t index)
+{
+    return index < IMPORTER_COUNT ? &importers[index] : NULL;
+}
 
 const char *scene_file_extension(uint32_t index)
 {
     return index < IMPORTER_COUNT ? importers[index].extension : NULL;
 }
 
-static bool has_extension(const char *path, const char *extension)
+const struct importer *importer_of(const char *path)
 {
-    size_t length = strlen(path);
-    size_t extension_length = strlen(extension);
-    return length > extension_length &&
-           strcasecmp(path + length - extension_length, extension) == 0;
+    const char *extension = strrchr(path, '.');
+    for (size_t i = 0; i < IMPORTER_COUNT && extension && extension > path; i++)
+        if (strcasecmp(extension, importers[i].extension) == 0)
+            return &importers[i];
+    return NULL;
 }
 
 // GLB is detected by its magic, whatever the file's name.
@@ -56,14 +61,14 @@ static struct scene *import_file(const char *path, struct error *out_error)
     }
     if (has_glb_magic(path))
         return scene_import_gltf(path, out_error);
+    const struct importer *importer = importer_of(path);
+    if (importer)
+        return importer->file(path, out_error);
     char kinds[256] = "";
     size_t length = 0;
-    for (size_t i = 0; i < IMPORTER_COUNT; i++) {
-        if (has_extension(path, importers[i].extension))
-            return importers[i].import(path, out_error);
+    for (size_t i = 0; i < IMPORTER_COUNT && length < sizeof(kinds); i++)
         length += (size_t)snprintf(kinds + length, sizeof(kinds) - length, "%s (%s), ",
                                    importers[i].format, importers[i].extension);
-    }
     error_set(out_error,
               "scene '%.200s' is of no supported kind; supported are %sand the built-in scenes "
               "(builtin:NAME)",

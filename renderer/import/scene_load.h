@@ -11,10 +11,6 @@
 // says what is wrong, where, and the allowed range. Thread-safe; blocks on disk.
 struct scene *scene_load(const char *source, struct error *out_error);
 
-// The importers that scene_load() chooses from.
-struct scene *scene_import_gltf(const char *path, struct error *out_error);
-struct scene *scene_import_obj(const char *path, struct error *out_error);
-
 // Extensions of the files that scene_load() reads, such as ".gltf": index counts from 0; NULL past
 // the last.
 const char *scene_file_extension(uint32_t index);

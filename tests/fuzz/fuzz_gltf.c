@@ -2,14 +2,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "renderer/import/import_memory.h"
+#include "renderer/import/importers.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct error error;
-    struct scene *scene = scene_import_gltf_memory(data, size, NULL, &error);
+    struct scene *scene = importer_of("fuzzed.gltf")->memory(data, size, NULL, &error);
     if (scene) {
         double box_min[3], box_max[3];
         scene_bounds(scene, box_min, box_max);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "renderer/import/import_memory.h"
+#include "renderer/import/importers.h"
 
 #define HEADER "#mtl "
 
@@ -48,7 +48,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct error error;
     size_t used = size > strlen(HEADER) ? write_library(data, size) : 0;
     struct scene *scene =
-        scene_import_obj_memory(data + used, size - used, library_folder(), &error);
+        importer_of("fuzzed.obj")->memory(data + used, size - used, library_folder(), &error);
     for (uint32_t i = 0; scene && i < scene->index_count; i++) {
         if (scene->indices[i] >= scene->vertex_count) {
             __builtin_trap();

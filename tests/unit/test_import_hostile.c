@@ -18,7 +18,7 @@
 
 #include "renderer/image/file_access.h"
 #include "renderer/scene/ray_scene.h"
-#include "renderer/import/scene_load.h"
+#include "renderer/import/importers.h"
 #include "support_scenes.h"
 
 #define TIME_LIMIT_S    10
@@ -40,10 +40,10 @@ enum child_status { CHILD_ACCEPTED = 0, CHILD_REJECTED = 10, CHILD_NO_MESSAGE = 
 static int load_in_child(const char *path)
 {
     struct error error = {{0}};
-    size_t length = strlen(path);
-    bool is_obj = length > 4 && strcmp(path + length - 4, ".obj") == 0;
+    const struct importer *importer = importer_of(path);
+    assert_non_null(importer);
     alarm(TIME_LIMIT_S);
-    struct scene *scene = is_obj ? scene_import_obj(path, &error) : scene_import_gltf(path, &error);
+    struct scene *scene = importer->file(path, &error);
     if (!scene) {
         return strlen(error.message) > 10 ? CHILD_REJECTED : CHILD_NO_MESSAGE;
     }

@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "renderer/import/import_memory.h"
+#include "renderer/import/importers.h"
 #include "renderer/import/scene_load.h"
 #include "support_scenes.h"
 

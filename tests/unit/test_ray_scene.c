@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "renderer/scene/ray_scene.h"
+#include "renderer/import/importers.h"
 #include "renderer/import/scene_load.h"
 #include "support_scenes.h"
 

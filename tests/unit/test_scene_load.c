@@ -6,12 +6,15 @@
 #include <setjmp.h>
 #include <cmocka.h>
 
+#include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "renderer/import/importers.h"
 #include "renderer/import/scene_load.h"
+#include "voxcast_paths.h"
 
 static char folder[] = "/tmp/voxcast-load-XXXXXX";
 
@@ -64,6 +67,41 @@ static void test_unknown_kind_and_missing_file(void **state)
     assert_non_null(strstr(error.message, "regular file"));
 }
 
+// Those of the stability suite and of the fuzzers: corpus/NAME is that of fuzz_NAME.
+static void test_every_importer_has_hostile_files(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; importer_at(i); i++) {
+        const struct importer *importer = importer_at(i);
+        char path[1024], name[64];
+        glob_t found;
+        assert_string_equal(importer->extension, scene_file_extension(i));
+        assert_true(importer->file && importer->memory);
+        snprintf(path, sizeof(path), "%s/tests/fuzz/corpus/*/*%s", VOXCAST_SOURCE_DIR,
+                 importer->extension);
+        if (glob(path, 0, NULL, &found) != 0)
+            fail_msg("there is no %s", path);
+        assert_int_equal(
+            sscanf(found.gl_pathv[0] + strlen(VOXCAST_SOURCE_DIR "/tests/fuzz/corpus/"), "%63[^/]",
+                   name),
+            1);
+        globfree(&found);
+        snprintf(path, sizeof(path), "%s/tests/fuzz/fuzz_%s.c", VOXCAST_SOURCE_DIR, name);
+        if (access(path, R_OK) != 0)
+            fail_msg("there is no %s", path);
+    }
+}
+
+static void test_importers_are_found_by_extension(void **state)
+{
+    (void)state;
+    assert_string_equal(importer_of("a/b.GLB")->extension, ".glb");
+    assert_string_equal(importer_of("a.gltf.obj")->extension, ".obj");
+    assert_null(importer_of("a.gltf/b"));
+    assert_null(importer_of("gltf"));
+    assert_null(importer_of(".obj"));
+}
+
 static void test_builtin(void **state)
 {
     (void)state;
@@ -96,6 +134,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kinds),
         cmocka_unit_test(test_unknown_kind_and_missing_file),
+        cmocka_unit_test(test_every_importer_has_hostile_files),
+        cmocka_unit_test(test_importers_are_found_by_extension),
         cmocka_unit_test(test_builtin),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -2,6 +2,7 @@
 // wrong, were refused without a reason, or left a document that violates scene.h.
 #include <assert.h>
 #include <cjson/cJSON.h>
+#include <glob.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@
 #include "renderer/clock.h"
 #include "renderer/image/file_access.h"
 #include "renderer/image/environment_image.h"
-#include "renderer/import/import_memory.h"
+#include "renderer/import/importers.h"
 #include "server/tool/stability/hostile.h"
 #include "server/tool/stability/mutation.h"
 #include "server/tool/stability/scene_check.h"
@@ -21,6 +22,8 @@
 #define FILE_MUTATIONS    10000u
 #define MESSAGE_MUTATIONS 20000u
 #define MAX_FILE_BYTES    (1u << 16)
+// The fuzzers start from them, too.
+#define CORPUS VOXCAST_SOURCE_DIR "/tests/fuzz/corpus/"
 // An import that takes longer counts as hanging.
 #define MAX_IMPORT_MS 10000.0
 
@@ -29,12 +32,12 @@ struct source {
     size_t size;
 };
 
-// Reads a file of tests/fuzz/corpus, from which the fuzzers start, too.
+// Reads a file of the corpus.
 static bool read_source(struct stability_run *run, const char *name, struct source *out_source)
 {
     char path[1024];
     struct error error = {""};
-    snprintf(path, sizeof(path), "%s/tests/fuzz/corpus/%s", VOXCAST_SOURCE_DIR, name);
+    snprintf(path, sizeof(path), CORPUS "%s", name);
     if (asset_read_file(path, MAX_FILE_BYTES, &out_source->bytes, &out_source->size, NULL, &error))
         return true;
     stability_fail(run, "%s", error.message);
@@ -49,11 +52,8 @@ static void check_fraction(struct stability_run *run, const char *name, uint32_t
         stability_fail(run, "%s: %u of %u mutations are taken", name, taken, count);
 }
 
-typedef struct scene *import_function(const void *bytes, size_t size, const char *base_folder,
-                                      struct error *out_error);
-
 // What an import broke; NULL for nothing.
-static const char *try_import(import_function *import, const uint8_t *bytes, size_t size,
+static const char *try_import(const struct importer *importer, const uint8_t *bytes, size_t size,
                               uint32_t *taken_count)
 {
     // A block of its own, so that sanitizers see reads beyond it.
@@ -63,7 +63,7 @@ static const char *try_import(import_function *import, const uint8_t *bytes, siz
     memcpy(copy, bytes, size);
     struct error error = {""};
     double from_ms = clock_now_ms();
-    struct scene *scene = import(copy, size, NULL, &error);
+    struct scene *scene = importer->memory(copy, size, NULL, &error);
     double took_ms = clock_now_ms() - from_ms;
     const char *broken = NULL;
     if (scene) {
@@ -101,8 +101,8 @@ static const char *try_environment(const uint8_t *bytes, size_t size, uint32_t *
 }
 
 // With an importer of scenes, or NULL for an environment.
-static void mutate_file(struct stability_run *run, const char *name, import_function *import,
-                        uint32_t *broken_count)
+static void mutate_file(struct stability_run *run, const char *name,
+                        const struct importer *importer, uint32_t *broken_count)
 {
     struct source source;
     uint8_t *mutated = malloc(2 * MAX_FILE_BYTES);
@@ -114,8 +114,8 @@ static void mutate_file(struct stability_run *run, const char *name, import_func
     for (uint32_t i = 0; i < FILE_MUTATIONS; i++) {
         struct random_numbers random = {i};
         size_t size = mutate(&random, source.bytes, source.size, mutated, 2 * source.size);
-        const char *broken = import ? try_import(import, mutated, size, &taken_count)
-                                    : try_environment(mutated, size, &taken_count);
+        const char *broken = importer ? try_import(importer, mutated, size, &taken_count)
+                                      : try_environment(mutated, size, &taken_count);
         *broken_count += broken != NULL;
         stability_measure(run, *broken_count, "%s, mutation %u: %s", name, i,
                           broken ? broken : "good");
@@ -127,14 +127,20 @@ static void mutate_file(struct stability_run *run, const char *name, import_func
 
 static void run_files(struct stability_run *run)
 {
-    static const char *const gltf[] = {"gltf/everything.gltf", "gltf/everything.glb",
-                                       "gltf/nodes.gltf"};
-    static const char *const obj[] = {"obj/concave.obj", "obj/materials.obj", "obj/quad.obj"};
     uint32_t broken = 0;
-    for (size_t i = 0; i < sizeof(gltf) / sizeof(gltf[0]); i++)
-        mutate_file(run, gltf[i], scene_import_gltf_memory, &broken);
-    for (size_t i = 0; i < sizeof(obj) / sizeof(obj[0]); i++)
-        mutate_file(run, obj[i], scene_import_obj_memory, &broken);
+    for (uint32_t i = 0; importer_at(i); i++) {
+        const struct importer *importer = importer_at(i);
+        char pattern[1024];
+        glob_t found;
+        snprintf(pattern, sizeof(pattern), CORPUS "*/*%s", importer->extension);
+        if (glob(pattern, 0, NULL, &found) != 0) {
+            stability_fail(run, "there is no %s", pattern);
+            continue;
+        }
+        for (size_t j = 0; j < found.gl_pathc; j++)
+            mutate_file(run, found.gl_pathv[j] + strlen(CORPUS), importer, &broken);
+        globfree(&found);
+    }
 }
 
 static void run_environments(struct stability_run *run)
@@ -348,8 +354,8 @@ static void run_extremes(struct stability_run *run)
 
 static const struct stability_case cases[] = {
     {.name = "mutated-files",
-     .invariant = "60,000 mutations of good glTF, GLB and OBJ files are refused with a reason or "
-                  "give a valid scene",
+     .invariant = "10,000 mutations of each good file, of every kind that scenes are read from, "
+                  "are refused with a reason or give a valid scene",
      .methods = STABILITY_NONE,
      .unit = "broken files",
      .run = run_files},
