@@ -263,8 +263,10 @@ uint32_t scene_add_primitive(struct scene *scene, const struct scene_vertex *ver
         .vertex_first = scene->vertex_count,
         .vertex_count = vertex_count,
     };
-    copy_vertices(scene, vertices, vertex_count);
     primitive->index_count = copy_triangles(scene, vertices, vertex_count, indices, index_count);
+    if (primitive->index_count == 0)
+        return SCENE_NONE;
+    copy_vertices(scene, vertices, vertex_count);
     scene->vertex_count += vertex_count;
     scene->index_count += primitive->index_count;
     primitive_compute_bounds(scene, primitive);

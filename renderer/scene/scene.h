@@ -265,7 +265,8 @@ uint32_t scene_add_mesh(struct scene *scene, const char *name);
 // Appends a triangle list to the newest mesh. `indices` count from 0 within `vertices` and must be
 // below vertex_count; index_count is a multiple of 3. Computes the bounds. Repairs what is not
 // finite: leaves out triangles with such positions and sets other values to 0 (colours to 1).
-// Counts both in scene->rejects.
+// Counts both in scene->rejects. Also SCENE_NONE where no triangle is left: a primitive without any
+// has no bounds. Importers tell their users of that themselves, beforehand.
 uint32_t scene_add_primitive(struct scene *scene, const struct scene_vertex *vertices,
                              uint32_t vertex_count, const uint32_t *indices, uint32_t index_count,
                              uint32_t material);

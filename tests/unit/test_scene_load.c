@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include <glob.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,6 +103,33 @@ static void test_importers_are_found_by_extension(void **state)
     assert_null(importer_of(".obj"));
 }
 
+// Triangles at no place are left out; a primitive of nothing else is refused.
+static void test_primitives_have_triangles(void **state)
+{
+    (void)state;
+    struct scene *scene = scene_create("scene");
+    struct scene_material white;
+    scene_material_init(&white, "white");
+    assert_int_equal(scene_add_material(scene, &white), 0);
+    assert_int_equal(scene_add_mesh(scene, "mesh"), 0);
+    struct scene_vertex vertices[4] = {{.position = {0, 0, 0}},
+                                       {.position = {1, 0, 0}},
+                                       {.position = {0, 1, 0}},
+                                       {.position = {NAN, 0, 0}}};
+    static const uint32_t indices[6] = {0, 1, 3, 0, 1, 2};
+    uint64_t before = scene->revisions.geometry;
+    assert_int_equal(scene_add_primitive(scene, vertices, 4, indices, 3, 0), SCENE_NONE);
+    assert_int_equal(scene_add_primitive(scene, vertices, 4, indices, 0, 0), SCENE_NONE);
+    assert_int_equal(scene->primitive_count + scene->vertex_count + scene->index_count, 0);
+    assert_int_equal(scene->meshes[0].primitive_count, 0);
+    assert_int_equal(scene->rejects.triangles, 1);
+    assert_int_equal(scene->revisions.geometry, before);
+    assert_int_equal(scene_add_primitive(scene, vertices, 4, indices, 6, 0), 0);
+    assert_int_equal(scene->primitives[0].index_count, 3);
+    assert_int_equal(scene->rejects.triangles, 2);
+    scene_destroy(&scene);
+}
+
 static void test_builtin(void **state)
 {
     (void)state;
@@ -136,6 +164,7 @@ int main(void)
         cmocka_unit_test(test_unknown_kind_and_missing_file),
         cmocka_unit_test(test_every_importer_has_hostile_files),
         cmocka_unit_test(test_importers_are_found_by_extension),
+        cmocka_unit_test(test_primitives_have_triangles),
         cmocka_unit_test(test_builtin),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
