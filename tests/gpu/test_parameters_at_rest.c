@@ -170,7 +170,18 @@ static const struct {
 } values[] = {
     {GROUP_ENVIRONMENT, "type", "constant"}, {GROUP_SETTINGS, "voxel_resolution", "128"},
     {GROUP_SETTINGS, "gamma", "2"},          {GROUP_MATERIAL, "alpha_cutoff", "0.6"},
-    {GROUP_MATERIAL, "thickness_m", "0.05"},
+    {GROUP_MATERIAL, "thickness_m", "0.05"}, {GROUP_SETTINGS, "gi_method", "none"},
+};
+
+// Settings and options of views that change no pixel of the first run, and why. All others must.
+static const struct {
+    const char *name, *why;
+} excuses[] = {
+    {"voxelize_every_frame", "makes the same voxels anew"},
+    {"levels_per_frame", "spreads the same work over frames"},
+    {"force_all_effects", "runs what has nothing to do"},
+    {"debug_level", "of debug views of voxels"},
+    {"debug_face", "likewise"},
 };
 
 static const struct {
@@ -322,6 +333,17 @@ static void draw_changes(struct run *run)
     close_stage(&stage);
 }
 
+// Why a parameter has no effect; NULL if it must have one.
+static const char *excuse_of(const struct parameter *parameter)
+{
+    if (parameter->group < GROUP_SETTINGS)
+        return "things in the scene may be out of sight";
+    for (size_t i = 0; i < sizeof(excuses) / sizeof(excuses[0]); i++)
+        if (strcmp(excuses[i].name, parameter->name) == 0)
+            return excuses[i].why;
+    return NULL;
+}
+
 // How far the image is from that of a view without history: of a scene made anew, or at least with
 // voxels of its own, where the scene is the same.
 static void judge_change(struct run *run, const struct changed *changed, struct stage *shared,
@@ -339,6 +361,10 @@ static void judge_change(struct run *run, const struct changed *changed, struct 
     double effect = difference(&fresh, &run->first);
     double left = difference(&fresh, &changed->picture);
     *without_effect += effect <= BOUND;
+    const char *excuse = excuse_of(parameter);
+    gi_check(report, effect > 0.0 || excuse, "%s.%s: it changes %g%s%s",
+             parameter_group_names[parameter->group], parameter->name, effect, excuse ? ": " : "",
+             excuse ? excuse : "");
     gi_check(report, left <= BOUND && changed->back <= BOUND,
              "%s.%s: %g of 255 from a fresh view, %g once set back (within %g; it changes %g)",
              parameter_group_names[parameter->group], parameter->name, left, changed->back, BOUND,
