@@ -17,8 +17,8 @@
 #define VOXEL_MAX_OWN_VOLUMES 6u
 
 // Where the number of bounces is limited: whether the cache holds the last one, too. Else pixels
-// gather it themselves, and would show one too many.
-enum voxel_last_bounce { LAST_BOUNCE_ANY, LAST_BOUNCE_GATHERED, LAST_BOUNCE_CACHED };
+// trace it themselves, and would show one too many.
+enum voxel_last_bounce { LAST_BOUNCE_ANY, LAST_BOUNCE_TRACED, LAST_BOUNCE_CACHED };
 
 struct voxel_volume_params {
     enum gi_method method; // GI_METHOD_CLIPMAP or GI_METHOD_GRID

@@ -113,7 +113,7 @@ static struct voxel_volume_params volume_params(const struct frame *frame)
         .colors = frame_has(frame, EFFECT_VOXEL_COLORS),
         .last_bounce = settings->bounces == 0 ? LAST_BOUNCE_ANY
                        : shows_cache(frame)   ? LAST_BOUNCE_CACHED
-                                              : LAST_BOUNCE_GATHERED,
+                                              : LAST_BOUNCE_TRACED,
     };
     enum voxel_resolution resolution = settings->voxel_resolution;
     if (resolution == VOXEL_RESOLUTION_AUTO)
