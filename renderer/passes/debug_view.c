@@ -25,7 +25,14 @@ static uint32_t program_of_view(enum debug_view view)
 
 static bool debug_view_run(struct frame *frame, const struct pass *pass, struct error *out_error)
 {
-    return pass_run_pixels(frame, pass, program_of_view(frame->params->debug_view), out_error);
+    uint32_t number = program_of_view(frame->params->debug_view);
+    if (number != PROGRAM_TILE_CLASSES)
+        return pass_run_pixels(frame, pass, number, out_error);
+    const struct gpu_program *program = pass_program(frame, pass, number, out_error);
+    if (!program)
+        return false;
+    pass_dispatch_tiles(frame, program, 1);
+    return true;
 }
 
 #define EFFECTS                                                                                    \

@@ -171,10 +171,22 @@ bool filter_accumulation(const struct frame *frame, const struct pass *pass, uin
     return true;
 }
 
+// Groups that handle `width` x `height` pixels each.
+static void dispatch_groups(const struct frame *frame, const struct gpu_program *program,
+                            uint32_t width, uint32_t height)
+{
+    gpu_dispatch(frame->gpu, program, (frame->plan->width + width - 1) / width,
+                 (frame->plan->height + height - 1) / height, 1);
+}
+
 void pass_dispatch_pixels(const struct frame *frame, const struct gpu_program *program,
                           uint32_t step)
 {
-    uint32_t edge = step * GROUP_EDGE;
-    gpu_dispatch(frame->gpu, program, (frame->plan->width + edge - 1) / edge,
-                 (frame->plan->height + edge - 1) / edge, 1);
+    dispatch_groups(frame, program, step * PIXEL_GROUP_WIDTH, step * PIXEL_GROUP_HEIGHT);
+}
+
+void pass_dispatch_tiles(const struct frame *frame, const struct gpu_program *program,
+                         uint32_t step)
+{
+    dispatch_groups(frame, program, step * GROUP_EDGE, step * GROUP_EDGE);
 }

@@ -8,7 +8,7 @@ static bool exposure_run(struct frame *frame, const struct pass *pass, struct er
     const struct gpu_program *programs[PROGRAM_COUNT];
     if (!pass_programs(frame, pass, programs, out_error))
         return false;
-    pass_dispatch_pixels(frame, programs[PROGRAM_HISTOGRAM], 2);
+    pass_dispatch_tiles(frame, programs[PROGRAM_HISTOGRAM], 2);
     gpu_barrier(frame->gpu);
     gpu_dispatch(frame->gpu, programs[PROGRAM_MEAN], 1, 1, 1);
     return true;

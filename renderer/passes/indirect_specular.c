@@ -13,7 +13,7 @@ static bool list_tiles(const struct frame *frame, const struct pass *pass, struc
         return false;
     static const uint32_t no_groups[4] = {0, 1, 1, 0};
     gpu_buffer_write(frame->view->buffers[RESOURCE_GLOSSY_TILES], 0, sizeof(no_groups), no_groups);
-    pass_dispatch_pixels(frame, list, 1);
+    pass_dispatch_tiles(frame, list, 1);
     gpu_barrier(frame->gpu);
     return true;
 }

@@ -107,9 +107,11 @@ bool shadow_map_is_stale(const struct frame *frame);
 struct frame_block;
 void shadow_map_relate_cascades(const struct frame *frame, struct frame_block *block);
 
-// Dispatches groups of GROUP_EDGE^2 over the rendered pixels, of which each invocation handles
-// `step` x `step`.
+// Dispatches groups of PIXEL_GROUP_WIDTH x PIXEL_GROUP_HEIGHT, or tiles of GROUP_EDGE^2, over the
+// rendered pixels, of which each invocation handles `step` x `step`.
 void pass_dispatch_pixels(const struct frame *frame, const struct gpu_program *program,
                           uint32_t step);
+void pass_dispatch_tiles(const struct frame *frame, const struct gpu_program *program,
+                         uint32_t step);
 
 #endif

@@ -13,7 +13,8 @@ static bool tonemap_run(struct frame *frame, const struct pass *pass, struct err
     if (!program)
         return false;
     bool planar = frame->params->output == FRAME_OUTPUT_YCBCR;
-    uint32_t step_x = GROUP_EDGE * (planar ? 8 : 1), step_y = GROUP_EDGE * (planar ? 2 : 1);
+    uint32_t step_x = PIXEL_GROUP_WIDTH * (planar ? 8 : 1);
+    uint32_t step_y = PIXEL_GROUP_HEIGHT * (planar ? 2 : 1);
     gpu_dispatch(frame->gpu, program, (frame->params->width + step_x - 1) / step_x,
                  (frame->params->height + step_y - 1) / step_y, 1);
     return true;

@@ -10,7 +10,7 @@
 #include "lib/cache_lookup.glsl"
 #include "lib/radiance_buffer.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 #if AGE
 const float REQUEST_FRAMES = 24.0; // as in shaders/gi/cache_select.comp

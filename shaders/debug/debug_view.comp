@@ -8,7 +8,7 @@
 #include "lib/shadow.glsl"
 #endif
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 layout(binding = UNIT_IDS) uniform usampler2D ids;
 

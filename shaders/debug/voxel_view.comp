@@ -9,7 +9,7 @@
 #include "lib/display.glsl"
 #include "lib/radiance_buffer.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 layout(binding = UNIT_VOXEL_RADIANCE) uniform sampler3D voxel_radiance;
 

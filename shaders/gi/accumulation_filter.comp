@@ -5,7 +5,7 @@
 #include "lib/ray_accumulation.glsl"
 #include "lib/specular_classify.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 // Below the first roughness neighbours reflect different things, above the second about the same.
 const vec2 FILTERED_ROUGHNESS = vec2(0.1, 0.4);

@@ -3,7 +3,7 @@
 #include "lib/gbuffer.glsl"
 #include "lib/cache_request.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 const uint REQUEST_EDGE = 4u;
 

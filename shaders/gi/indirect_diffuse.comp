@@ -10,7 +10,7 @@
 #include "lib/indirect_reflect.glsl"
 #include "lib/radiance_buffer.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 #if CACHED
 // Two pixels share irradiance if normals and positions differ by no more than this.

@@ -6,7 +6,7 @@
 #include "lib/hit_shading.glsl"
 #include "lib/ray_sequence.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 // Angle in radians over which textures are filtered at hits.
 const float RAY_SPREAD = 0.03;

@@ -7,7 +7,7 @@
 #include "lib/lighting.glsl"
 #include "lib/ray_sequence.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 // Rays end just before the light.
 const float REACH = 0.999;

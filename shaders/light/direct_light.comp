@@ -7,7 +7,7 @@
 #include "lib/ray_shadow_filter.glsl"
 #include "shared/display.h"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 void main()
 {

@@ -2,7 +2,7 @@
 #include "lib/geometry.glsl"
 #include "lib/gbuffer.glsl"
 
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 layout(binding = UNIT_IDS) uniform usampler2D ids;
 
