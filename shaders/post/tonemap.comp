@@ -11,7 +11,11 @@ layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 layout(std430, binding = BIND_OUTPUT) writeonly buffer output_storage
 {
+#if OUTPUT == OUTPUT_LINEAR
+    vec4 pixels[]; // a CPU driver stores a vector in half the time of its words
+#else
     uint words[];
+#endif
 };
 
 layout(binding = UNIT_EXPOSURE) uniform usamplerBuffer exposure_words; // the first is the scale
@@ -98,11 +102,7 @@ void main()
 #if OUTPUT == OUTPUT_RGBA8
     words[at] = packUnorm4x8(vec4(displayed(pixel), 1.0));
 #else
-    vec3 color = radiance_at(pixel);
-    words[4u * at] = floatBitsToUint(color.r);
-    words[4u * at + 1u] = floatBitsToUint(color.g);
-    words[4u * at + 2u] = floatBitsToUint(color.b);
-    words[4u * at + 3u] = floatBitsToUint(1.0);
+    pixels[at] = vec4(radiance_at(pixel), 1.0);
 #endif
 }
 #endif
