@@ -3,6 +3,7 @@
 // A device has one display per process, and eglTerminate() ends it for all users. So users are
 // counted, and the last renderer on a display terminates it.
 #include <pthread.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,10 +145,38 @@ static bool open_by_kind(struct gpu *gpu, const EGLDeviceEXT *devices, int count
     return false;
 }
 
+// Processors that this process may use.
+static int count_processors(void)
+{
+    cpu_set_t set;
+    int count = sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : 1;
+    FILE *limit = fopen("/sys/fs/cgroup/cpu.max", "r");
+    long quota_us, period_us;
+    if (limit && fscanf(limit, "%ld %ld", &quota_us, &period_us) == 2 && quota_us > 0 &&
+        period_us > 0 && quota_us / period_us < count)
+        count = (int)((quota_us + period_us - 1) / period_us);
+    if (limit)
+        fclose(limit);
+    return count;
+}
+
+// llvmpipe splits a dispatch into one run of groups a thread, once, however dear its groups are.
+// With two threads a processor the dearest run is half as long. It has 32 threads at most, and
+// reads the variable when its display is opened.
+static void set_driver_threads(void)
+{
+    int count = count_processors();
+    char text[16];
+    snprintf(text, sizeof(text), "%d", count < 16 ? 2 * count : 32);
+    if (count > 1)
+        setenv("LP_NUM_THREADS", text, 0);
+}
+
 bool gpu_egl_open(struct gpu *gpu, const char *choice, struct error *out_error)
 {
     gpu->display = EGL_NO_DISPLAY;
     gpu->context = EGL_NO_CONTEXT;
+    set_driver_threads();
     const char *client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     EGLDeviceEXT devices[MAX_EGL_DEVICES];
     EGLint count = 0;
