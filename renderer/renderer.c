@@ -43,6 +43,11 @@ static const char *find_shader_dir(const struct renderer_params *params)
     return VOXCAST_INSTALL_SHARE_DIR "/shaders";
 }
 
+void renderer_prepare_process(void)
+{
+    gpu_prepare_process();
+}
+
 struct renderer *renderer_create(const struct renderer_params *params, struct error *out_error)
 {
     struct renderer *renderer = calloc(1, sizeof(*renderer));

@@ -64,6 +64,10 @@ struct renderer_params {
     void *user;
 };
 
+// For programs: call first in main(), before there are threads. A renderer on a CPU then uses its
+// processors better; without it everything works, too.
+void renderer_prepare_process(void);
+
 // On failure returns NULL; the message names what is missing and what to install.
 struct renderer *renderer_create(const struct renderer_params *params, struct error *out_error);
 void renderer_destroy(struct renderer **renderer);

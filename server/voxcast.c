@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "renderer/renderer.h"
 #include "server/tool/cli.h"
 
 static const char usage[] =
@@ -26,6 +27,7 @@ static const char usage[] =
 
 int main(int argc, char **argv)
 {
+    renderer_prepare_process();
     log_set_level(LOG_ERROR);
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
         strcmp(argv[1], "help") == 0) {

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "protocol/limits.h"
+#include "renderer/renderer.h"
 #include "server/render/accuracy_service.h"
 #include "server/network/network.h"
 #include "server/options.h"
@@ -218,6 +219,7 @@ int main(int argument_count, char **arguments)
 {
     static struct daemon daemon;
     struct error error = {""};
+    renderer_prepare_process();
     enum options_result result =
         options_read(argument_count, arguments, environ, &daemon.options, &error);
     if (result == OPTIONS_HELP) {

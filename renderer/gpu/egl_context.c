@@ -163,7 +163,7 @@ static int count_processors(void)
 // llvmpipe splits a dispatch into one run of groups a thread, once, however dear its groups are.
 // With two threads a processor the dearest run is half as long. It has 32 threads at most, and
 // reads the variable when its display is opened.
-static void set_driver_threads(void)
+void gpu_prepare_process(void)
 {
     int count = count_processors();
     char text[16];
@@ -176,7 +176,6 @@ bool gpu_egl_open(struct gpu *gpu, const char *choice, struct error *out_error)
 {
     gpu->display = EGL_NO_DISPLAY;
     gpu->context = EGL_NO_CONTEXT;
-    set_driver_threads();
     const char *client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     EGLDeviceEXT devices[MAX_EGL_DEVICES];
     EGLint count = 0;
