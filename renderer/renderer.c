@@ -10,6 +10,7 @@
 #include "renderer/camera.h"
 #include "renderer/finite_check.h"
 #include "renderer/frame/frame_block.h"
+#include "renderer/frame/settings_block.h"
 #include "renderer/gi/gi.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
@@ -197,6 +198,9 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     frame_block_fill(frame, &block);
     shadow_map_relate_cascades(frame, &block);
     gpu_buffer_write(view->frame_block, 0, sizeof(block), &block);
+    uint32_t words[SETTINGS_WORD_COUNT];
+    settings_block_fill(&frame->params->settings, words);
+    gpu_buffer_write(view->settings_block, 0, sizeof(words), words);
     gpu_scene_bind(frame->gpu_scene);
     view_bind(view);
     gi_bind_frame(frame);

@@ -72,8 +72,6 @@ static void fill_display(const struct frame *frame, struct frame_block *block)
     block->debug_view = (uint32_t)params->debug_view;
     block->debug_level = frame_plan_debug_level(&frame->inputs);
     block->debug_face = (uint32_t)params->debug_face;
-    block->tonemap = (uint32_t)settings->tonemap;
-    block->gamma = settings->gamma;
     block->exposure_scale = fixed ? exp2f(settings->exposure_ev) : 0.0f;
     block->exposure_bias = exp2f(settings->exposure_ev);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "renderer/frame/settings_block.h"
 #include "shared/frame_block.h"
 #include "shared/slots.h"
 
@@ -15,10 +16,12 @@ struct view *view_create(struct gpu *gpu)
     view->timer = gpu_timer_create(gpu);
     view->frame_block = gpu_buffer_create(gpu, "view_targets.frame", GPU_BUFFER_STATIC,
                                           sizeof(struct frame_block), NULL);
+    view->settings_block = gpu_buffer_create(gpu, "view_targets.settings", GPU_BUFFER_STATIC,
+                                             SETTINGS_WORD_COUNT * sizeof(uint32_t), NULL);
     view->shadow_views = gpu_buffer_create(
         gpu, "view_targets.shadow_views", GPU_BUFFER_STATIC,
         (MAX_SHADOW_LAYERS + MAX_CASCADES) * sizeof(struct shadow_view_block), NULL);
-    if (!view->timer || !view->frame_block || !view->shadow_views)
+    if (!view->timer || !view->frame_block || !view->settings_block || !view->shadow_views)
         view_destroy(&view);
     return view;
 }
@@ -55,6 +58,7 @@ void view_destroy(struct view **view_slot)
     draw_list_finish(&view->draws);
     draw_list_finish(&view->shadow_draws);
     gpu_buffer_destroy(&view->frame_block);
+    gpu_buffer_destroy(&view->settings_block);
     gpu_buffer_destroy(&view->shadow_views);
     for (uint32_t i = 0; i < RENDERER_FRAMES_IN_RING; i++) {
         gpu_fence_destroy(&view->ring[i].fence);
@@ -146,6 +150,7 @@ void view_bind(const struct view *view)
 {
     struct gpu *gpu = view->gpu;
     gpu_bind_uniforms(gpu, BIND_FRAME, view->frame_block);
+    gpu_bind_uniforms(gpu, BIND_SETTINGS, view->settings_block);
     gpu_bind_texels(gpu, UNIT_SHADOW_VIEWS, view->shadow_views, GPU_TEXEL_UINT4);
     gpu_bind_texture(gpu, UNIT_IDS, view->ids);
     gpu_bind_texture(gpu, UNIT_DEPTH, view->depth);

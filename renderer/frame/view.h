@@ -36,6 +36,7 @@ struct view {
     uint32_t height;
 
     struct gpu_buffer *frame_block;
+    struct gpu_buffer *settings_block;
     struct gpu_texture *ids;
     struct gpu_texture *depth;
     struct gpu_framebuffer *framebuffer;        // ids and depth

@@ -1,6 +1,8 @@
 #include <assert.h>
 #include <stdio.h>
+#include <string.h>
 
+#include "renderer/frame/settings_block.h"
 #include "renderer/frame/view.h"
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/timer.h"
@@ -33,8 +35,9 @@ bool passes_check(const struct pass *const *passes, uint32_t count, struct error
 
 bool passes_prepare_gpu(struct gpu *gpu)
 {
-    char defines[RESOURCE_DEFINES_BYTES];
+    char defines[RESOURCE_DEFINES_BYTES + SETTINGS_DEFINE_BYTES];
     resources_write_defines(defines);
+    settings_block_write_define(defines + strlen(defines));
     return gpu_set_shader_defines(gpu, defines);
 }
 

@@ -67,7 +67,7 @@ void main()
         float f90 = mix(s.f90, 1.0, s.metallic);
         vec3 reflected = f0 * scale_bias.x + f90 * scale_bias.y;
         uint at = pixel_index(pixel);
-        vec3 added = reflected * light * (SPECULAR_OCCLUSION * voxels.indirect_intensity);
+        vec3 added = reflected * light * (SPECULAR_OCCLUSION * settings.indirect_intensity);
         radiance[at] = vec4(former_radiance(at) + added, 1.0);
     }
 }

@@ -44,11 +44,11 @@ vec3 tonemap_khronos_neutral(vec3 color)
 
 vec3 tonemap(vec3 color)
 {
-    if (frame.tonemap == TONEMAP_HABLE)
+    if (settings.tonemap == TONEMAP_HABLE)
         return tonemap_hable(color);
-    if (frame.tonemap == TONEMAP_ACES)
+    if (settings.tonemap == TONEMAP_ACES)
         return tonemap_aces(color);
-    if (frame.tonemap == TONEMAP_KHRONOS_NEUTRAL)
+    if (settings.tonemap == TONEMAP_KHRONOS_NEUTRAL)
         return tonemap_khronos_neutral(color);
     return color;
 }
@@ -57,8 +57,8 @@ vec3 tonemap(vec3 color)
 vec3 transfer(vec3 color)
 {
     color = clamp(color, 0.0, 1.0);
-    if (frame.gamma > 0.0)
-        return pow(color, vec3(1.0 / frame.gamma));
+    if (settings.gamma > 0.0)
+        return pow(color, vec3(1.0 / settings.gamma));
     return mix(1.055 * pow(color, vec3(1.0 / 2.4)) - 0.055, 12.92 * color,
                lessThanEqual(color, vec3(0.0031308)));
 }

@@ -8,6 +8,9 @@ layout(std140, binding = BIND_FRAME) uniform frame_uniforms
     frame_block frame;
 };
 
+// A member for each setting of protocol/parameters/settings.def; booleans are 0 or 1.
+layout(std140, binding = BIND_SETTINGS) uniform settings_uniforms{SETTINGS_MEMBERS} settings;
+
 const float PI = 3.14159265358979;
 
 // Through the pixel's centre; the component along the camera's forward direction is 1.

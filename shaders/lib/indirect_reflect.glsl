@@ -27,5 +27,5 @@ vec3 reflect_irradiance(surface s, vec4 light)
 #if AMBIENT_OCCLUSION
     open *= light.a;
 #endif
-    return reflectance * light.rgb * (open * voxels.radiance_scale * voxels.indirect_intensity);
+    return reflectance * light.rgb * (open * voxels.radiance_scale * settings.indirect_intensity);
 }

@@ -82,7 +82,8 @@ vec3 transparent_layer_radiance(surface s, transparent_layer through, uvec2 pixe
 #if AMBIENT_OCCLUSION
     diffuse *= around.a;
 #endif
-    sum += diffuse * around.rgb * (s.occlusion * voxels.radiance_scale * voxels.indirect_intensity);
+    sum +=
+        diffuse * around.rgb * (s.occlusion * voxels.radiance_scale * settings.indirect_intensity);
     vec3 mirror = reflect(-s.view, s.normal);
     vec2 scale_bias = environment_brdf(s.roughness, n_v);
     vec3 f0 = mix(s.f0, s.base_color, s.metallic);

@@ -48,8 +48,6 @@ struct frame_block {
     uint all_blinn_phong; // 1: shade every material as Blinn-Phong
     uint shadow_tap_count;
     uint sun_shadow_view; // shadow view of the whole scene
-    uint tonemap;
-    float gamma;          // 0: the sRGB curve
     float exposure_scale; // 0: automatic
     float exposure_bias;
     float environment_intensity;
@@ -64,13 +62,11 @@ struct frame_block {
     uint first_area_light;
     uint environment_texel;
     uint unused_0;
-    uint unused_1;
-    uint unused_2;
     BLOCK_STRUCT(cascade_block) cascades[MAX_CASCADES]; // of the view, smallest first
 };
 
 #ifdef __STDC__
-BLOCK_SIZE(frame_block, 19 + 2 * MAX_CASCADES);
+BLOCK_SIZE(frame_block, 18 + 2 * MAX_CASCADES);
 #endif
 
 #endif

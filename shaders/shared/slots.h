@@ -3,8 +3,9 @@
 #define VOXCAST_SHADERS_SHARED_SLOTS_H
 
 // Uniform blocks
-#define BIND_FRAME  0
-#define BIND_VOXELS 1
+#define BIND_FRAME    0
+#define BIND_VOXELS   1
+#define BIND_SETTINGS 2
 
 // Shader storage blocks: what shaders write. What they only read has a texture unit, below. The
 // buffers of a view come behind: the rows of renderer/frame/frame.def give BIND_ and UNIT_ for

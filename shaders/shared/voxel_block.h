@@ -63,13 +63,13 @@ struct voxel_block {
     uint trace_budget; // cache entries per frame
     uint all_faces;    // 1: trace faces that no pixel has requested, too
     float ao_radius_m; // reach of ambient occlusion
-    float indirect_intensity;
+    float unused_0;
     float specular_max_roughness; // rougher surfaces use the cache
     float cone_max_diameter_m;
     float peak_radiance;            // of the last generation's brightest face / scale
     float sample_count;             // samples in the accumulation
     float specular_min_reflectance; // surfaces of lower reflectance use the cache
-    float unused;
+    float unused_1;
     BLOCK_STRUCT(cone_march) cache_march;
     BLOCK_STRUCT(cone_march) pixel_march;
     uint cell_level_count; // levels with cells of their own; the rest are mips of the last

@@ -11,7 +11,9 @@
 
 #include <cmocka.h>
 
+#include "renderer/frame/settings_block.h"
 #include "renderer/gpu/program.h"
+#include "renderer/passes/pass.h"
 #include "shared/area_light_block.h"
 #include "shared/environment_block.h"
 #include "shared/frame_block.h"
@@ -49,7 +51,8 @@ static const char shader[] =
     "layout(std430, binding = 10) buffer b12 { uint sum; };\n"
     "void main()\n"
     "{\n"
-    "    sum = frame.tonemap + voxels.level_count + instances[1].material + materials[1].flags +\n"
+    "    sum = frame.debug_view + voxels.level_count + instances[1].material + materials[1].flags "
+    "+\n"
     "          textures[1].sampling + lights[1].type + area_lights[1].two_sided +\n"
     "          shadow_views[1].perspective + environment.equirectangular + regions[1].level +\n"
     "          batches[1].region + tiles[1].columns;\n"
@@ -115,10 +118,51 @@ static void offsets_are_the_drivers(void **state)
     assert_int_equal(wrong, 0);
 }
 
+// Settings are one word each, in the order of their rows.
+static void settings_are_the_drivers(void **state)
+{
+    (void)state;
+    static const char *const names[] = {
+#define PARAMETER(record, name, ...) #name,
+#include "protocol/parameters/settings.def"
+#undef PARAMETER
+    };
+    struct error error = {""};
+    struct gpu *gpu = gpu_create("auto", VOXCAST_SOURCE_DIR "/shaders", &error);
+    if (!gpu)
+        fail_msg("%s", error.message);
+    assert_true(passes_prepare_gpu(gpu));
+    const struct gpu_program *program =
+        gpu_program_get(gpu, "post/tonemap.comp", "OUTPUT 1\nDISPLAY_READY 0\nBLANK 0\n", &error);
+    if (!program)
+        fail_msg("%s", error.message);
+    for (size_t i = 0; i < SETTINGS_WORD_COUNT; i++) {
+        char path[96];
+        uint32_t offset = UINT32_MAX;
+        snprintf(path, sizeof(path), "settings_uniforms.%s", names[i]);
+        assert_true(gpu_program_find_member(program, path, &offset));
+        assert_int_equal(offset, i * sizeof(uint32_t));
+    }
+    gpu_destroy(&gpu);
+    struct render_settings settings;
+    uint32_t words[SETTINGS_WORD_COUNT];
+    render_settings_init(&settings);
+    settings.gamma = 2.5f;
+    settings.bounces = 7;
+    settings.shadows = true;
+    settings_block_fill(&settings, words);
+    float gamma;
+    memcpy(&gamma, &words[SETTINGS_WORD_gamma], sizeof(gamma));
+    assert_float_equal(gamma, 2.5f, 0.0f);
+    assert_int_equal(words[SETTINGS_WORD_bounces], 7);
+    assert_int_equal(words[SETTINGS_WORD_shadows], 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(offsets_are_the_drivers),
+        cmocka_unit_test(settings_are_the_drivers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -95,6 +95,7 @@ export const LAYERS = [
       'renderer/gpu',
       'renderer/scene',
       'renderer/path_tracer',
+      'protocol/parameters',
       'shaders/shared',
       'renderer/camera.h',
       ...BASE,

@@ -273,7 +273,6 @@ static void fill_cones(const struct frame *frame, struct voxel_volume *volume)
     fill_march(volume, plan->quality.cone_set, plan->quality.cone_step, &block->pixel_march,
                block->pixel_cones);
     block->ao_radius_m = OCCLUSION_FRACTION * frame->gpu_scene->diagonal_m;
-    block->indirect_intensity = frame->params->settings.indirect_intensity;
 }
 
 // Whether the frame has no volume because other views use up all own volumes.
