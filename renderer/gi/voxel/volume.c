@@ -19,7 +19,8 @@
 // 1.4 in Sponza, 1.9 in the atrium, whose triangles are small; 0.7 to 1.0 times as many cells.
 #define SURFEL_ROOM 2.2
 #define CELL_ROOM   1.1
-#define MAX_POOL    16e6
+// Fraction of all voxels that the pools begin with at most; 0.12 are occupied in the atrium.
+#define MAX_OCCUPIED 0.3
 
 static uint32_t log2_of(uint32_t edge)
 {
@@ -107,13 +108,22 @@ static bool create_storage(struct voxel_volume *volume)
     return volume->radiance && volume->index && volume->counters && volume->tiles && volume->block;
 }
 
-// Chooses capacities so that the pools need not grow while voxelizing, which starts over then.
+// Chooses capacities so that the pools need not grow while voxelizing, which starts over then. The
+// estimate counts triangles that share voxels more than once, so it is not trusted without bound.
 static bool size_pools(struct voxel_volume *volume, const struct gpu_scene *gpu_scene)
 {
-    uint32_t area = volume->params.edge * volume->params.edge * volume->cell_level_count;
-    double surfels = fmin(voxel_estimate_surfels(volume, gpu_scene), MAX_POOL);
-    volume->surfel_capacity = (uint32_t)fmax(SURFEL_ROOM * surfels, 6.0 * area);
-    volume->cell_capacity = (uint32_t)fmax(CELL_ROOM * surfels, 4.0 * area);
+    uint32_t edge = volume->params.edge;
+    double area = (double)edge * edge * volume->cell_level_count, all = area * edge;
+    double surfels = voxel_estimate_surfels(volume, gpu_scene);
+    volume->surfel_capacity =
+        (uint32_t)fmax(fmin(SURFEL_ROOM * surfels, 2.0 * MAX_OCCUPIED * all), 6.0 * area);
+    volume->cell_capacity =
+        (uint32_t)fmax(fmin(CELL_ROOM * surfels, MAX_OCCUPIED * all), 4.0 * area);
+    if (create_pools(volume))
+        return true;
+    free_pools(volume);
+    volume->surfel_capacity = (uint32_t)(6.0 * area);
+    volume->cell_capacity = (uint32_t)(4.0 * area);
     return create_pools(volume);
 }
 
