@@ -17,36 +17,76 @@ layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 const float SHARED_COSINE = 0.97;
 const float SHARED_VOXELS = 0.3;
 
+bool is_same_surface(vec3 normal, vec3 position, vec3 known_normal, vec3 known_position)
+{
+    return dot(normal, known_normal) > SHARED_COSINE &&
+           abs(dot(position - known_position, known_normal)) <
+               SHARED_VOXELS * voxels.levels[0].voxel_edge_m;
+}
+
+uvec2 pixel_of_four(uint number)
+{
+    return gl_GlobalInvocationID.xy * 2u + uvec2(number & 1u, number >> 1);
+}
+
+// Returns whether the pixel is in the image and lit, as its bit of four.
+uint load_position(uint number, out vec3 position, out vec3 normal)
+{
+    uvec2 pixel = pixel_of_four(number);
+    surface s = gbuffer_load(min(pixel, frame.render_size - 1u));
+    position = s.position;
+    normal = s.geometric_normal;
+    bool inside = all(lessThan(pixel, frame.render_size));
+    return inside && s.shading < SHADE_UNLIT ? 1u << number : 0u;
+}
+
+void shade(uint number, bool lit, vec4 light)
+{
+    uvec2 pixel = pixel_of_four(number);
+#if ALONE
+    bool written = all(lessThan(pixel, frame.render_size));
+    vec3 before = vec3(0.0);
+#else
+    bool written = lit;
+    vec3 before = former_radiance(pixel_index(pixel));
+#endif
+    if (!written)
+        return;
+    surface s = gbuffer_load(pixel);
+    vec3 reflected = lit ? reflect_irradiance(s, light) : vec3(0.0);
+    radiance[pixel_index(pixel)] = vec4(before + reflected, 1.0);
+}
+
 void main()
 {
-    uvec2 first = gl_GlobalInvocationID.xy * 2u;
-    vec3 known_normal = vec3(0.0);
-    vec3 known_position = vec3(0.0);
-    vec4 known = vec4(0.0);
-    for (uint i = 0u; i < 4u; i++) {
-        uvec2 pixel = first + uvec2(i & 1u, i >> 1);
-        if (any(greaterThanEqual(pixel, frame.render_size)))
-            continue;
-        uint at = pixel_index(pixel);
-#if ALONE
-        radiance[at] = vec4(0.0, 0.0, 0.0, 1.0);
-        vec3 before = vec3(0.0);
-#else
-        vec3 before = former_radiance(at);
-#endif
-        surface s = gbuffer_load(pixel);
-        if (s.shading >= SHADE_UNLIT)
-            continue;
-        bool shared_light = dot(s.geometric_normal, known_normal) > SHARED_COSINE &&
-                            abs(dot(s.position - known_position, known_normal)) <
-                                SHARED_VOXELS * voxels.levels[0].voxel_edge_m;
-        if (!shared_light) {
-            known = cached_irradiance(s.position, s.geometric_normal);
-            known_normal = s.geometric_normal;
-            known_position = s.position;
+    vec3 positions[4];
+    vec3 normals[4];
+    uint lit =
+        load_position(0u, positions[0], normals[0]) | load_position(1u, positions[1], normals[1]) |
+        load_position(2u, positions[2], normals[2]) | load_position(3u, positions[3], normals[3]);
+    // A look-up is the dear part. On a CPU this loop runs as often as the lane with the most
+    // surfaces needs, mostly once; a branch in a loop over the pixels would run four times.
+    vec4 light[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+    for (uint left = lit; left != 0u;) {
+        uint from = uint(findLSB(left));
+        vec3 normal = normals[from];
+        vec3 position = positions[from];
+        vec4 known = cached_irradiance(position, normal);
+        bool shared_light = true; // up to the first pixel on another surface
+        for (uint i = 0u; i < 4u; i++) {
+            bool waits = (left & (1u << i)) != 0u;
+            shared_light =
+                shared_light && (!waits || i == from ||
+                                 is_same_surface(normals[i], positions[i], normal, position));
+            light[i] = waits && shared_light ? known : light[i];
+            left &= shared_light ? ~(1u << i) : ~0u;
         }
-        radiance[at] = vec4(before + reflect_irradiance(s, known), 1.0);
     }
+    // No loop: a CPU driver keeps arrays in memory that a loop indexes.
+    shade(0u, (lit & 1u) != 0u, light[0]);
+    shade(1u, (lit & 2u) != 0u, light[1]);
+    shade(2u, (lit & 4u) != 0u, light[2]);
+    shade(3u, (lit & 8u) != 0u, light[3]);
 }
 #else
 // Mean of a pixel's samples.

@@ -23,6 +23,12 @@ uint cache_level(vec3 position, out float out_room)
 // so that nothing jumps where the dominant axis changes.
 const float MIN_WEIGHT = 0.1;
 
+// Of the 2x2x2 voxels around a position, counted along x, then y, then z.
+ivec3 voxel_step(uint number)
+{
+    return ivec3(number & 1u, (number >> 1) & 1u, number >> 2);
+}
+
 // Adds irradiance / pi / scale and ambient visibility, interpolated trilinearly between the faces
 // of the eight voxels around `position` that face the way of `normal`. `position` is relative to
 // the anchor.
@@ -40,44 +46,53 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
     uint shift = voxels.levels[level].edge_log2;
     int edge_mask = voxels.levels[level].edge - 1;
     low -= voxels.levels[level].wraps != 0u ? ivec3(0) : origin;
+    // A CPU driver runs a loop for all lanes as often as one of them needs it, and branches always.
+    // So the faces that there are, often a quarter of what the normal asks for, are listed first:
+    // a bit for each voxel and axis, four bits a voxel.
+    bvec3 negative = lessThan(normal, vec3(0.0));
+    uint waiting = 0u;
+    for (uint i = 0u; i < 8u; i++) {
+        uvec3 slot = uvec3((low + voxel_step(i)) & edge_mask);
+        uint entry =
+            index_word(first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift))));
+        uint cell = max(entry, 1u) - 1u;
+        uvec2 x = cell_words(cell, 0u).zw; // of the faces from word CELL_FACES on
+        uvec4 yz = cell_words(cell, 4u);
+        uint found = ((negative.x ? x.y : x.x) != 0u ? 1u : 0u) |
+                     ((negative.y ? yz.y : yz.x) != 0u ? 2u : 0u) |
+                     ((negative.z ? yz.w : yz.z) != 0u ? 4u : 0u);
+        waiting |= entry != 0u ? (found & axes) << (4u * i) : 0u;
+    }
     uint record_words = voxels.face_record_words;
-    for (int i = 0; i < 8; i++) {
-        ivec3 step = ivec3(i & 1, (i >> 1) & 1, i >> 2);
+    for (; waiting != 0u; waiting &= waiting - 1u) {
+        uint bit = uint(findLSB(waiting));
+        uint axis = bit & 3u;
+        ivec3 step = voxel_step(bit >> 2);
         uvec3 slot = uvec3((low + step) & edge_mask);
         uint cell =
-            index_word(first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift))));
-        if (cell == 0u)
-            continue;
-        cell -= 1u;
+            index_word(first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift)))) - 1u;
+        uint face = 2u * axis + (negative[axis] ? 1u : 0u);
+        uvec4 shown = face_shown((cell_word(cell, CELL_FACES + face) - 1u) * record_words);
+        float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(shown.x))), 0.0);
+        facing *= facing;
+        vec4 light = face_shown_light(shown);
         vec3 near = mix(1.0 - t, t, vec3(step));
         float fraction = near.x * near.y * near.z + 1e-4;
-        for (uint left = axes; left != 0u; left &= left - 1u) {
-            uint axis = uint(findLSB(left));
-            float along = axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z;
-            uint record = cell_word(cell, CELL_FACES + 2u * axis + (along < 0.0 ? 1u : 0u));
-            if (record == 0u)
-                continue;
-            uvec4 shown = face_shown((record - 1u) * record_words);
-            if (shown.x == VOXEL_NONE)
-                continue;
-            float facing = max(dot(normal, octahedral_decode(unpackSnorm2x16(shown.x))), 0.0);
-            facing *= facing;
-            vec4 light = face_shown_light(shown);
-            // Ambient visibility 0 marks an unknown face.
-            float w = light.a > 0.0 ? fraction * facing * facing : 0.0;
-            sum += w * light;
-            weight += w;
-        }
+        // Ambient visibility 0 marks an unknown face.
+        bool known = shown.x != VOXEL_NONE && light.a > 0.0;
+        float w = known ? fraction * facing * facing : 0.0;
+        sum += known ? w * light : vec4(0.0);
+        weight += w;
     }
 }
 
-// If the matching faces are unknown, uses any face of the voxel.
+// If the matching faces are unknown (weight 0), uses any face of the voxel.
 void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout float weight)
 {
     uint cell = find_cell(level, ivec3(floor(position * voxels.levels[level].inverse_voxel_edge)));
-    if (cell == VOXEL_NONE)
-        return;
-    for (uint face = 0u; face < VOXEL_FACES; face++) {
+    // Where the weight is known, the body runs once on a CPU rather than for every face.
+    uint face = weight < 1e-6 && cell != VOXEL_NONE ? 0u : VOXEL_FACES;
+    for (; face < VOXEL_FACES; face++) {
         uint words = cell_face(cell, face);
         if (words == VOXEL_NONE)
             continue;
@@ -117,7 +132,6 @@ vec4 cached_irradiance(vec3 world, vec3 normal)
 #else
     add_cached(level, position, normal, sum, weight);
 #endif
-    if (weight < 1e-6)
-        add_any_face(level, position, normal, sum, weight);
+    add_any_face(level, position, normal, sum, weight);
     return weight > 0.0 ? sum / weight : vec4(0.0);
 }

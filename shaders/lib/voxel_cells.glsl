@@ -4,7 +4,7 @@
 #include "lib/voxel.glsl"
 
 layout(binding = UNIT_VOXEL_INDEX) uniform usamplerBuffer index_texels;
-layout(binding = UNIT_CELLS) uniform usamplerBuffer cell_texels; // CELL_WORDS each
+layout(binding = UNIT_CELLS) uniform usamplerBuffer cell_texels; // CELL_WORDS words each
 layout(binding = UNIT_FACES) uniform usamplerBuffer face_texels; // voxels.face_record_words words
 
 #ifdef CELLS_STORED
@@ -32,9 +32,15 @@ uint index_word(uint index)
     return texelFetch(index_texels, int(index)).x;
 }
 
+// Four words of a cell from word `first`.
+uvec4 cell_words(uint cell, uint first)
+{
+    return texelFetch(cell_texels, int((cell * CELL_WORDS + first) >> 2));
+}
+
 uint cell_word(uint cell, uint word)
 {
-    return texelFetch(cell_texels, int(cell * CELL_WORDS + word)).x;
+    return cell_words(cell, word)[word & 3u];
 }
 
 // Four words of a face record, which begins at word `words`.

@@ -564,7 +564,7 @@ void voxel_volume_bind(struct voxel_volume *volume)
     gpu_bind_storage(gpu, BIND_CACHE_QUEUE, volume->queue);
     gpu_bind_storage(gpu, BIND_FACES, volume->faces);
     gpu_bind_texels(gpu, UNIT_VOXEL_INDEX, volume->index, GPU_TEXEL_UINT);
-    gpu_bind_texels(gpu, UNIT_CELLS, volume->cells, GPU_TEXEL_UINT);
+    gpu_bind_texels(gpu, UNIT_CELLS, volume->cells, GPU_TEXEL_UINT4);
     gpu_bind_texels(gpu, UNIT_FACES, volume->faces, GPU_TEXEL_UINT4);
     gpu_bind_texels(gpu, UNIT_SURFELS, volume->surfels, GPU_TEXEL_UINT);
     gpu_bind_texels(gpu, UNIT_VOXEL_WORK, volume->work, GPU_TEXEL_UINT4);
