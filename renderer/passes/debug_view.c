@@ -45,9 +45,11 @@ const struct pass debug_view_pass = {
              RESOURCE(VOXEL_RADIANCE) | RESOURCE(IRRADIANCE),
     .writes = RESOURCE(RADIANCE),
     .program_count = PROGRAM_COUNT,
-    .programs = {{"debug/debug_view.comp", EFFECTS, 0, NULL},
+    .programs = {{"debug/debug_view.comp", EFFECTS, SWITCH_BIT(POWER_TRANSFER), NULL},
                  {"debug/voxel_view.comp", EFFECTS,
-                  SWITCH_BIT(VOXEL_DIRECTIONS) | SWITCH_BIT(SHOW) | SWITCH_BIT(CELLS), NULL},
+                  SWITCH_BIT(VOXEL_DIRECTIONS) | SWITCH_BIT(SHOW) | SWITCH_BIT(CELLS) |
+                      SWITCH_BIT(POWER_TRANSFER),
+                  NULL},
                  {"debug/cache_view.comp", EFFECTS | EFFECT_BIT(EFFECT_CLIP_LEVELS),
                   SWITCH_BIT(VOXEL_DIRECTIONS) | SWITCH_BIT(AGE), NULL},
                  {"debug/tile_classes.comp", EFFECTS, SWITCH_BIT(LAYERS), NULL}},

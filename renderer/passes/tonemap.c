@@ -25,6 +25,8 @@ const struct pass tonemap_pass = {
     .writes = RESOURCE(OUTPUT),
     .program_count = 1,
     .programs = {{"post/tonemap.comp", 0,
-                  SWITCH_BIT(OUTPUT) | SWITCH_BIT(DISPLAY_READY) | SWITCH_BIT(BLANK), NULL}},
+                  SWITCH_BIT(OUTPUT) | SWITCH_BIT(DISPLAY_READY) | SWITCH_BIT(BLANK) |
+                      SWITCH_BIT(SCALED) | SWITCH_BIT(TONE_CURVE) | SWITCH_BIT(POWER_TRANSFER),
+                  NULL}},
     .run = tonemap_run,
 };

@@ -1,9 +1,10 @@
-// Radiance to display values: exposure, tone curve, transfer function.
+// Radiance to display values: exposure, tone curve (TONE_CURVE, as settings number them), transfer
+// function (POWER_TRANSFER: a plain power, else sRGB).
 #include "lib/frame.glsl"
 
-const uint TONEMAP_HABLE = 0u;
-const uint TONEMAP_ACES = 1u;
-const uint TONEMAP_KHRONOS_NEUTRAL = 2u;
+#define TONEMAP_HABLE           0
+#define TONEMAP_ACES            1
+#define TONEMAP_KHRONOS_NEUTRAL 2
 
 // Hable 2010, "Uncharted 2: HDR Lighting", with its white point of 11.2 and exposure bias of 2.
 vec3 hable_curve(vec3 x)
@@ -44,21 +45,24 @@ vec3 tonemap_khronos_neutral(vec3 color)
 
 vec3 tonemap(vec3 color)
 {
-    if (settings.tonemap == TONEMAP_HABLE)
-        return tonemap_hable(color);
-    if (settings.tonemap == TONEMAP_ACES)
-        return tonemap_aces(color);
-    if (settings.tonemap == TONEMAP_KHRONOS_NEUTRAL)
-        return tonemap_khronos_neutral(color);
+#if TONE_CURVE == TONEMAP_HABLE
+    return tonemap_hable(color);
+#elif TONE_CURVE == TONEMAP_ACES
+    return tonemap_aces(color);
+#elif TONE_CURVE == TONEMAP_KHRONOS_NEUTRAL
+    return tonemap_khronos_neutral(color);
+#else
     return color;
+#endif
 }
 
-// IEC 61966-2-1 if gamma is 0, else a plain power.
 vec3 transfer(vec3 color)
 {
     color = clamp(color, 0.0, 1.0);
-    if (settings.gamma > 0.0)
-        return pow(color, vec3(1.0 / settings.gamma));
+#if POWER_TRANSFER
+    return pow(color, vec3(1.0 / settings.gamma));
+#else // IEC 61966-2-1
     return mix(1.055 * pow(color, vec3(1.0 / 2.4)) - 0.055, 12.92 * color,
                lessThanEqual(color, vec3(0.0031308)));
+#endif
 }

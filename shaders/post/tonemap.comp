@@ -1,8 +1,9 @@
 // Radiance to output pixels. In: radiance, exposure. Out, by OUTPUT:
 //   0: planar full-range YCbCr 4:2:0 (ITU-R BT.601 as JFIF has it); an invocation does 8 x 2 pixels
 //   1: RGBA8, 2: four floats, linear and unexposed; an invocation does 1 pixel
-// Scales bilinearly if the rendered size is not the output size. DISPLAY_READY: shows values as
+// SCALED: bilinearly from the rendered size to the output's. DISPLAY_READY: shows values as
 // they are (debug views). BLANK: plain grey, for debug views that have nothing to show.
+// TONE_CURVE and POWER_TRANSFER: see lib/display.glsl.
 #include "lib/display.glsl"
 #include "lib/radiance_buffer.glsl"
 #include "shared/display.h"
@@ -24,9 +25,7 @@ vec3 radiance_at(uvec2 shown)
 {
 #if BLANK
     return vec3(0.5);
-#endif
-    if (frame.render_size == frame.output_size)
-        return former_radiance(shown.y * frame.render_size.x + shown.x);
+#elif SCALED
     vec2 size = vec2(frame.render_size);
     vec2 at =
         clamp((vec2(shown) + 0.5) * size / vec2(frame.output_size) - 0.5, vec2(0.0), size - 1.0);
@@ -38,6 +37,9 @@ vec3 radiance_at(uvec2 shown)
     vec3 bottom = mix(former_radiance(high.y * frame.render_size.x + low.x),
                       former_radiance(high.y * frame.render_size.x + high.x), part.x);
     return mix(top, bottom, part.y);
+#else
+    return former_radiance(shown.y * frame.render_size.x + shown.x);
+#endif
 }
 
 vec3 displayed(uvec2 shown)
@@ -67,19 +69,21 @@ void main()
         return;
     vec4 cb, cr;
     vec4 luma[4]; // two words for each of two rows
-    for (uint i = 0u; i < 4u; i++) {
+    uint i = 0u;
+    do {
         vec3 sum = vec3(0.0);
-        for (uint j = 0u; j < 4u; j++) {
+        uint j = 0u;
+        do {
             uint x = 2u * i + (j & 1u);
             uint row = j >> 1;
             vec3 rgb = displayed(first + uvec2(x, row)) * 255.0;
             sum += rgb;
             luma[2u * row + (x >> 2)][x & 3u] = dot(rgb, vec3(0.299, 0.587, 0.114));
-        }
+        } while (++j < 4u);
         sum *= 0.25;
         cb[i] = dot(sum, vec3(-0.168735892, -0.331264108, 0.5)) + 128.0;
         cr[i] = dot(sum, vec3(0.5, -0.418687589, -0.081312411)) + 128.0;
-    }
+    } while (++i < 4u);
     uint pitch = frame.luma_pitch_bytes / 4u;
     uint chroma_pitch = frame.chroma_pitch_bytes / 4u;
     uint rows = (frame.output_size.y + 1u) & ~1u;

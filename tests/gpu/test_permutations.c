@@ -123,6 +123,7 @@ static void random_plan(struct frame_plan *plan, struct frame_inputs *out_in)
     params.debug_level = below(4);
     params.output = (enum frame_output)below(3);
     random_settings(&params.settings);
+    params.settings.gamma = below(2) ? 2.2f : 0.0f;
     history = (struct frame_history){.drawn = below(4) > 0, .params = params};
     history.accumulation.samples = below(80);
     static struct gi_state gi;
