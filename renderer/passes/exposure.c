@@ -1,5 +1,10 @@
 // Automatic exposure from a luminance histogram.
 #include "renderer/passes/pass.h"
+#include "shared/display.h"
+#include "shared/work_groups.h"
+
+_Static_assert(HISTOGRAM_BINS <= PIXEL_GROUP_WIDTH * PIXEL_GROUP_HEIGHT,
+               "an invocation of each group keeps a bin");
 
 enum { PROGRAM_HISTOGRAM, PROGRAM_MEAN, PROGRAM_COUNT };
 
@@ -8,7 +13,7 @@ static bool exposure_run(struct frame *frame, const struct pass *pass, struct er
     const struct gpu_program *programs[PROGRAM_COUNT];
     if (!pass_programs(frame, pass, programs, out_error))
         return false;
-    pass_dispatch_tiles(frame, programs[PROGRAM_HISTOGRAM], 2);
+    pass_dispatch_pixels(frame, programs[PROGRAM_HISTOGRAM], 2);
     gpu_barrier(frame->gpu);
     gpu_dispatch(frame->gpu, programs[PROGRAM_MEAN], 1, 1, 1);
     return true;

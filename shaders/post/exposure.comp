@@ -15,14 +15,15 @@ const float LOWEST_STOP = -24.0;
 const float BINS_PER_STOP = 2.6;
 
 #if STAGE == EXPOSURE_HISTOGRAM
-layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;
+layout(local_size_x = PIXEL_GROUP_WIDTH, local_size_y = PIXEL_GROUP_HEIGHT) in;
 
 shared uint bins[HISTOGRAM_BINS];
 
 void main()
 {
-    for (uint i = gl_LocalInvocationIndex; i < HISTOGRAM_BINS; i += GROUP_EDGE * GROUP_EDGE)
-        bins[i] = 0u;
+    uint own_bin = gl_LocalInvocationIndex; // of the first HISTOGRAM_BINS invocations
+    if (own_bin < HISTOGRAM_BINS)
+        bins[own_bin] = 0u;
     barrier();
     // Samples one of each 2 x 2 pixels: plenty for a mean.
     uvec2 pixel = gl_GlobalInvocationID.xy * 2u;
@@ -34,9 +35,8 @@ void main()
         }
     }
     barrier();
-    for (uint i = gl_LocalInvocationIndex; i < HISTOGRAM_BINS; i += GROUP_EDGE * GROUP_EDGE)
-        if (bins[i] > 0u)
-            atomicAdd(histogram[i], bins[i]);
+    if (own_bin < HISTOGRAM_BINS && bins[own_bin] > 0u)
+        atomicAdd(histogram[own_bin], bins[own_bin]);
 }
 #else
 layout(local_size_x = 1) in;
