@@ -38,9 +38,12 @@ void main()
     if (number >= counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u])
         return;
     uint cell = texelFetch(list_texels, int(LIST_LIT * voxels.list_capacity + number)).x;
-    for (uint face = 0u; face < VOXEL_FACES; face++) {
-        uint words = cell_face(cell, face);
-        if (words == VOXEL_NONE || face_word(words, FACE_NORMAL) == VOXEL_NONE)
+    uint left = cell_faces(cell);
+    if (left == 0u)
+        return;
+    do {
+        uint words = cell_face(cell, uint(findLSB(left)));
+        if (face_word(words, FACE_NORMAL) == VOXEL_NONE)
             continue;
         uint state = face_word(words, FACE_STATE);
         bool marched = (state & FACE_MARCHED) != 0u;
@@ -58,7 +61,7 @@ void main()
             bool lively = ((state >> FACE_CHANGE_BIT) & 63u) >= LARGE_CHANGE;
             enqueue(CACHE_MARCH_CLASSES + (!seen ? 2u : lively ? 0u : 1u), words);
         }
-    }
+    } while ((left &= left - 1u) != 0u);
 }
 #else
 uint count_classes(uint first, uint end, uint maximum)

@@ -22,10 +22,12 @@ void main()
     uint word = cell_word(cell, 0u);
     uint level = word >> CELL_LEVEL_BIT;
     ivec3 voxel = slot_voxel(level, word & CELL_SLOT_MASK);
-    for (uint face = 0u; face < VOXEL_FACES; face++) {
+    uint left = cell_faces(cell);
+    if (left == 0u)
+        return;
+    do {
+        uint face = uint(findLSB(left));
         uint words = cell_face(cell, face);
-        if (words == VOXEL_NONE)
-            continue;
         uvec4 shown = face_shown(words);
         if ((shown.w & FACE_VALID) == 0u)
             continue;
@@ -33,7 +35,8 @@ void main()
         vec3 normal = octahedral_decode(unpackSnorm2x16(shown.x));
         vec4 sum = 4.0 * face_light(words);
         float weight = 4.0;
-        for (int i = 0; i < 9; i++) {
+        int i = 0;
+        do {
             ivec2 step = ivec2(i % 3, i / 3) - 1;
             if (step == ivec2(0))
                 continue;
@@ -50,10 +53,10 @@ void main()
                              smoothstep(0.7, 0.95, dot(normal, its_normal));
             sum += fraction * face_light(from);
             weight += fraction;
-        }
+        } while (++i < 9);
         sum /= weight;
         sum.a = max(sum.a, 0.001); // 0 means unknown
         faces[words + FACE_SHOWN] = packHalf2x16(sum.xy);
         faces[words + FACE_SHOWN + 1u] = packHalf2x16(sum.zw);
-    }
+    } while ((left &= left - 1u) != 0u);
 }

@@ -73,7 +73,8 @@ void main()
 #if MARCH
     cone_sum along = no_cone_sum();
 #endif
-    for (uint i = 0u; i < uint(voxels.cache_march.cone_count); i++) {
+    uint i = 0u;
+    do {
 #if MARCH
         uint hit;
         add_cone(g, i, along, hit);
@@ -84,7 +85,7 @@ void main()
 #else
         add_cone_at_hit(g, i, face_word(words, FACE_WORDS + i), found);
 #endif
-    }
+    } while (++i < uint(voxels.cache_march.cone_count));
 #if MARCH
     found.ambient_visibility = along.ambient_visibility;
 #else

@@ -67,20 +67,23 @@ void main()
     // A look-up is the dear part. On a CPU this loop runs as often as the lane with the most
     // surfaces needs, mostly once; a branch in a loop over the pixels would run four times.
     vec4 light[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-    for (uint left = lit; left != 0u;) {
-        uint from = uint(findLSB(left));
-        vec3 normal = normals[from];
-        vec3 position = positions[from];
-        vec4 known = cached_irradiance(position, normal);
-        bool shared_light = true; // up to the first pixel on another surface
-        for (uint i = 0u; i < 4u; i++) {
-            bool waits = (left & (1u << i)) != 0u;
-            shared_light =
-                shared_light && (!waits || i == from ||
-                                 is_same_surface(normals[i], positions[i], normal, position));
-            light[i] = waits && shared_light ? known : light[i];
-            left &= shared_light ? ~(1u << i) : ~0u;
-        }
+    uint left = lit;
+    if (left != 0u) {
+        do {
+            uint from = uint(findLSB(left));
+            vec3 normal = normals[from];
+            vec3 position = positions[from];
+            vec4 known = cached_irradiance(position, normal);
+            bool shared_light = true; // up to the first pixel on another surface
+            for (uint i = 0u; i < 4u; i++) {
+                bool waits = (left & (1u << i)) != 0u;
+                shared_light =
+                    shared_light && (!waits || i == from ||
+                                     is_same_surface(normals[i], positions[i], normal, position));
+                light[i] = waits && shared_light ? known : light[i];
+                left &= shared_light ? ~(1u << i) : ~0u;
+            }
+        } while (left != 0u);
     }
     // No loop: a CPU driver keeps arrays in memory that a loop indexes.
     shade(0u, (lit & 1u) != 0u, light[0]);

@@ -47,7 +47,8 @@ void main()
     vec3 known_normal = vec3(0.0);
     float known_roughness = 0.0;
     vec3 light = vec3(0.0);
-    for (uint i = 0u; i < 4u; i++) {
+    uint i = 0u;
+    do {
         uvec2 pixel = first + uvec2(i & 1u, i >> 1);
         if (any(greaterThanEqual(pixel, frame.render_size)))
             continue;
@@ -69,5 +70,5 @@ void main()
         uint at = pixel_index(pixel);
         vec3 added = reflected * light * (SPECULAR_OCCLUSION * settings.indirect_intensity);
         radiance[at] = vec4(former_radiance(at) + added, 1.0);
-    }
+    } while (++i < 4u);
 }

@@ -29,10 +29,11 @@ void main()
     hemisphere g =
         begin_hemisphere(voxel_position(s.position), s.normal, s.thin, vec2(cos(turn), sin(turn)));
     cone_sum found = no_cone_sum();
-    for (uint i = 0u; i < uint(CONE_MARCH.cone_count); i++) {
+    uint i = 0u;
+    do {
         uint hit;
         add_cone(g, i, found, hit);
-    }
+    } while (++i < uint(CONE_MARCH.cone_count));
     vec4 sum = first ? vec4(0.0) : former_sum(at);
     accumulated[at] = sum + vec4(found.light, found.ambient_visibility);
 }

@@ -60,26 +60,33 @@ vec3 light_visibility(surface s, vec3 u)
 {
     light_sum sum = light_sum(vec3(0.0), vec3(0.0));
 #if PUNCTUAL_LIGHTS
-    for (uint i = 0u; i < frame.light_count; i++) {
-        light_block light = load_light(i);
-        if (!has_size(light))
-            continue;
-        // A sphere light, sampled as the disk that faces the surface.
-        vec3 l;
-        vec3 unshadowed = punctual_unshadowed(s, light, l);
-        float angle = 2.0 * PI * u.y;
-        vec3 offset = frame_about(l) * vec3(cos(angle), sin(angle), 0.0);
-        add_light(sum, s, unshadowed, light.position + offset * (sqrt(u.x) * light.radius_m), u.z);
-        u = fract(u + NEXT_LIGHT);
+    uint i = 0u;
+    if (i < frame.light_count) {
+        do {
+            light_block light = load_light(i);
+            if (!has_size(light))
+                continue;
+            // A sphere light, sampled as the disk that faces the surface.
+            vec3 l;
+            vec3 unshadowed = punctual_unshadowed(s, light, l);
+            float angle = 2.0 * PI * u.y;
+            vec3 offset = frame_about(l) * vec3(cos(angle), sin(angle), 0.0);
+            vec3 texel = light.position + offset * (sqrt(u.x) * light.radius_m);
+            add_light(sum, s, unshadowed, texel, u.z);
+            u = fract(u + NEXT_LIGHT);
+        } while (++i < frame.light_count);
     }
 #endif
 #if AREA_LIGHTS
-    for (uint i = 0u; i < frame.area_light_count; i++) {
-        area_light_block light = load_area_light(i);
-        if (light.shadow.first_view == NO_SHADOW)
-            continue;
-        add_light(sum, s, area_unshadowed(s, light), point_on(light, s, u), fract(16.0 * u.z));
-        u = fract(u + NEXT_LIGHT);
+    uint j = 0u;
+    if (j < frame.area_light_count) {
+        do {
+            area_light_block light = load_area_light(j);
+            if (light.shadow.first_view == NO_SHADOW)
+                continue;
+            add_light(sum, s, area_unshadowed(s, light), point_on(light, s, u), fract(16.0 * u.z));
+            u = fract(u + NEXT_LIGHT);
+        } while (++j < frame.area_light_count);
     }
 #endif
     return mix(vec3(1.0), sum.seen / max(sum.whole, vec3(1e-30)),
@@ -95,7 +102,7 @@ void main()
     uint picture = uint(voxels.sample_count) - 1u;
     uint turn = picture % (STEP * STEP);
     if (picture == 0u)
-        for (uint i = 0u; i < STEP * STEP; i++) {
+        for (uint i = 0u; i < uint(GATHER_STEP * GATHER_STEP); i++) {
             uvec2 other = texel * STEP + uvec2(i % STEP, i / STEP);
             if (all(lessThan(other, frame.render_size)))
                 accumulated[visibility_index(other)] = vec4(0.0);

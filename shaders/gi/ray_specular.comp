@@ -52,14 +52,15 @@ void main()
     bool wanted = false;
     uvec2 pixel = first;
     surface s;
-    for (uint i = 0u; i < uint(GATHER_STEP * GATHER_STEP) && !wanted; i++) {
+    uint i = 0u;
+    do {
         uint turn = (i + picture) % uint(GATHER_STEP * GATHER_STEP);
         pixel = first + uvec2(turn % uint(GATHER_STEP), turn / uint(GATHER_STEP));
         if (any(greaterThanEqual(pixel, frame.render_size)))
             continue;
         s = gbuffer_load(pixel);
         wanted = s.shading < SHADE_UNLIT && needs_specular_trace(s);
-    }
+    } while (++i < uint(GATHER_STEP * GATHER_STEP) && !wanted);
     if (!wanted)
         return;
     uvec2 texel = first / uint(GATHER_STEP);

@@ -85,31 +85,36 @@ bvh_hit closest_hit(vec3 origin, vec3 direction, float reach, float chance)
     uint current = 0u;
     for (;;) {
         // Descends to a leaf, or to the end of the stack, an empty leaf.
-        while (current < BVH_LEAF) {
-            uint at = current * BVH_NODE_TEXELS;
-            uvec4 lower0 = bvh_node_texel(at);
-            uvec4 upper0 = bvh_node_texel(at + 1u);
-            uvec4 lower1 = bvh_node_texel(at + 2u);
-            uvec4 upper1 = bvh_node_texel(at + 3u);
-            vec2 span0 = cross_box(uintBitsToFloat(lower0.xyz), uintBitsToFloat(upper0.xyz), origin,
-                                   inverse);
-            vec2 span1 = cross_box(uintBitsToFloat(lower1.xyz), uintBitsToFloat(upper1.xyz), origin,
-                                   inverse);
-            bool met0 = span0.x <= min(span0.y * 1.000001, hit.distance);
-            bool met1 = span1.x <= min(span1.y * 1.000001, hit.distance);
-            bool swapped = span1.x < span0.x;
-            uint nearer = met0 && !(met1 && swapped) ? lower0.w : lower1.w;
-            uint farther = swapped ? lower0.w : lower1.w;
-            if (met0 && met1)
-                stack[depth++] = farther;
-            current = nearer;
-            if (!met0 && !met1)
-                current = depth > 0u ? stack[--depth] : BVH_LEAF;
+        if (current < BVH_LEAF) {
+            do {
+                uint at = current * BVH_NODE_TEXELS;
+                uvec4 lower0 = bvh_node_texel(at);
+                uvec4 upper0 = bvh_node_texel(at + 1u);
+                uvec4 lower1 = bvh_node_texel(at + 2u);
+                uvec4 upper1 = bvh_node_texel(at + 3u);
+                vec2 span0 = cross_box(uintBitsToFloat(lower0.xyz), uintBitsToFloat(upper0.xyz),
+                                       origin, inverse);
+                vec2 span1 = cross_box(uintBitsToFloat(lower1.xyz), uintBitsToFloat(upper1.xyz),
+                                       origin, inverse);
+                bool met0 = span0.x <= min(span0.y * 1.000001, hit.distance);
+                bool met1 = span1.x <= min(span1.y * 1.000001, hit.distance);
+                bool swapped = span1.x < span0.x;
+                uint nearer = met0 && !(met1 && swapped) ? lower0.w : lower1.w;
+                uint farther = swapped ? lower0.w : lower1.w;
+                if (met0 && met1)
+                    stack[depth++] = farther;
+                current = nearer;
+                if (!met0 && !met1)
+                    current = depth > 0u ? stack[--depth] : BVH_LEAF;
+            } while (current < BVH_LEAF);
         }
         uint number = (current & ~BVH_LEAF) >> BVH_COUNT_BITS;
         uint end = number + (current & BVH_COUNT_MASK);
-        for (; number < end; number++)
-            cross_triangle(number, origin, direction, chance, hit);
+        if (number < end) {
+            do {
+                cross_triangle(number, origin, direction, chance, hit);
+            } while (++number < end);
+        }
         if (depth == 0u)
             return hit;
         current = stack[--depth];

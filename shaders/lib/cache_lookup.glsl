@@ -6,17 +6,14 @@
 uint cache_level(vec3 position, out float out_room)
 {
     uint level = 0u;
-    out_room = 0.0;
-    while (level < voxels.cell_level_count) {
+    do {
         ivec3 origin = voxels.levels[level].origin;
         vec3 at = position * voxels.levels[level].inverse_voxel_edge - vec3(origin);
         vec3 rim = min(at, float(voxels.levels[level].edge) - at);
         out_room = min(rim.x, min(rim.y, rim.z)) - 1.0;
-        if (out_room >= 0.0)
-            return level;
-        level++;
-    }
-    return voxels.cell_level_count;
+        level += out_room < 0.0 ? 1u : 0u;
+    } while (out_room < 0.0 && level < voxels.cell_level_count);
+    return level;
 }
 
 // Minimum axis weight (squared normal component): a surface reads the faces of every axis above it,
@@ -51,7 +48,8 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
     // a bit for each voxel and axis, four bits a voxel.
     bvec3 negative = lessThan(normal, vec3(0.0));
     uint waiting = 0u;
-    for (uint i = 0u; i < 8u; i++) {
+    uint i = 0u;
+    do {
         uvec3 slot = uvec3((low + voxel_step(i)) & edge_mask);
         uint entry =
             index_word(first_index + (slot.x | (slot.y << shift) | (slot.z << (2u * shift))));
@@ -62,9 +60,11 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
                      ((negative.y ? yz.y : yz.x) != 0u ? 2u : 0u) |
                      ((negative.z ? yz.w : yz.z) != 0u ? 4u : 0u);
         waiting |= entry != 0u ? (found & axes) << (4u * i) : 0u;
-    }
+    } while (++i < 8u);
+    if (waiting == 0u)
+        return;
     uint record_words = voxels.face_record_words;
-    for (; waiting != 0u; waiting &= waiting - 1u) {
+    do {
         uint bit = uint(findLSB(waiting));
         uint axis = bit & 3u;
         ivec3 step = voxel_step(bit >> 2);
@@ -83,7 +83,7 @@ void add_cached(uint level, vec3 position, vec3 normal, inout vec4 sum, inout fl
         float w = known ? fraction * facing * facing : 0.0;
         sum += known ? w * light : vec4(0.0);
         weight += w;
-    }
+    } while ((waiting &= waiting - 1u) != 0u);
 }
 
 // If the matching faces are unknown (weight 0), uses any face of the voxel.
@@ -92,7 +92,9 @@ void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout 
     uint cell = find_cell(level, ivec3(floor(position * voxels.levels[level].inverse_voxel_edge)));
     // Where the weight is known, the body runs once on a CPU rather than for every face.
     uint face = weight < 1e-6 && cell != VOXEL_NONE ? 0u : VOXEL_FACES;
-    for (; face < VOXEL_FACES; face++) {
+    if (face == VOXEL_FACES)
+        return;
+    do {
         uint words = cell_face(cell, face);
         if (words == VOXEL_NONE)
             continue;
@@ -102,7 +104,7 @@ void add_any_face(uint level, vec3 position, vec3 normal, inout vec4 sum, inout 
         float w = 0.01 + max(dot(normal, octahedral_decode(unpackSnorm2x16(shown.x))), 0.0);
         sum += w * face_shown_light(shown);
         weight += w;
-    }
+    } while (++face < VOXEL_FACES);
 }
 
 // Irradiance / pi / scale; a: ambient visibility. Zero where unknown.
@@ -119,7 +121,8 @@ vec4 cached_irradiance(vec3 world, vec3 normal)
     // A level fades into the next over its last voxels.
     float own = level + 1u < voxels.cell_level_count ? clamp(room * 0.25, 0.0, 1.0) : 1.0;
     uint levels = own < 1.0 ? 2u : 1u;
-    for (uint i = 0u; i < levels; i++) {
+    uint i = 0u;
+    do {
         vec4 part = vec4(0.0);
         float part_weight = 0.0;
         add_cached(level + i, position, normal, part, part_weight);
@@ -128,7 +131,7 @@ vec4 cached_irradiance(vec3 world, vec3 normal)
             sum += part * (fraction / part_weight);
             weight += fraction;
         }
-    }
+    } while (++i < levels);
 #else
     add_cached(level, position, normal, sum, weight);
 #endif

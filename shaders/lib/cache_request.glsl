@@ -8,11 +8,15 @@ void request_faces(vec3 world, vec3 normal, uint frame_number)
     vec3 position = world - voxels.anchor;
     float room;
     uint level = cache_level(position, room);
-    for (uint i = 0u; i < 2u && level + i < voxels.cell_level_count; i++) {
-        vec3 at = position * voxels.levels[level + i].inverse_voxel_edge - 0.5;
+    if (level >= voxels.cell_level_count)
+        return;
+    uint end = min(level + (room < 4.0 ? 2u : 1u), voxels.cell_level_count);
+    do {
+        vec3 at = position * voxels.levels[level].inverse_voxel_edge - 0.5;
         ivec3 low = ivec3(floor(at));
-        for (int j = 0; j < 8; j++) {
-            uint cell = find_cell(level + i, low + ivec3(j & 1, (j >> 1) & 1, j >> 2));
+        int j = 0;
+        do {
+            uint cell = find_cell(level, low + ivec3(j & 1, (j >> 1) & 1, j >> 2));
             if (cell == VOXEL_NONE)
                 continue;
             for (uint axis = 0u; axis < 3u; axis++) {
@@ -21,8 +25,6 @@ void request_faces(vec3 world, vec3 normal, uint frame_number)
                 if (words != VOXEL_NONE && along * along > MIN_WEIGHT)
                     faces[words + FACE_REQUEST] = frame_number;
             }
-        }
-        if (room >= 4.0)
-            return;
-    }
+        } while (++j < 8);
+    } while (++level < end);
 }

@@ -58,11 +58,13 @@ float inside_level(uint level, vec3 position)
 // Edge in m of the finest voxels at a position; outside all levels those of the coarsest.
 float finest_voxel(vec3 position)
 {
-    float edge = voxels.levels[0].voxel_edge_m;
-    for (uint level = 0u;
-         level + 1u < voxels.cell_level_count && inside_level(level, position) < 0.0; level++)
-        edge = voxels.levels[level + 1u].voxel_edge_m;
-    return edge;
+    uint level = 0u;
+    bool outside;
+    do {
+        outside = level + 1u < voxels.cell_level_count && inside_level(level, position) < 0.0;
+        level += outside ? 1u : 0u;
+    } while (outside);
+    return voxels.levels[level].voxel_edge_m;
 }
 
 // Start of cones in voxels above their surface: `usual`, but above a thin surface beyond the
@@ -106,12 +108,14 @@ vec4 sample_voxels(vec3 position, vec3 direction, float diameter, out uint out_l
     uint last = voxels.level_count - 1u;
     uint level = min(uint(wanted), last);
     float blend = min(wanted, float(last)) - float(level);
-    float room = inside_level(level, position);
-    while (room < 0.0 && level < voxels.level_count) {
-        level++;
-        blend = 0.0;
-        room = level < voxels.level_count ? inside_level(level, position) : 0.0;
-    }
+    float room;
+    bool outside;
+    do {
+        room = inside_level(level, position);
+        outside = room < 0.0;
+        level += outside ? 1u : 0u;
+        blend = outside ? 0.0 : blend;
+    } while (outside && level <= last);
     out_level = level;
     if (level > last)
         return vec4(0.0);
@@ -157,37 +161,41 @@ cone_light trace_cone(cone c, float occlusion_reach_m)
     float maximum = 0.0;
     float t = 0.0;
     float voxel = voxels.levels[0].voxel_edge_m;
-    for (uint i = 0u; i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE; i++) {
-        // Near its start a cone is thinner than a voxel: limit steps to one voxel there.
-        float length_m = max(min(c.step, 1.0) * voxel, c.step * 2.0 * c.tangent * t);
-        length_m = min(length_m, max(WIDEST_STEP * c.widest, voxel));
-        float middle = t + 0.5 * length_m;
-        uint level;
-        // Not much narrower than the step, so that samples leave no gaps.
-        float diameter = min(max(2.0 * c.tangent * middle, length_m), max(c.widest, voxel));
-        vec4 value = sample_voxels(c.origin + middle * c.direction, c.direction, diameter, level);
-        if (level >= voxels.level_count)
-            break;
+    uint i = t < c.reach_m ? 0u : CONE_MAX_STEPS;
+    if (i < CONE_MAX_STEPS) {
+        do {
+            // Near its start a cone is thinner than a voxel: limit steps to one voxel there.
+            float length_m = max(min(c.step, 1.0) * voxel, c.step * 2.0 * c.tangent * t);
+            length_m = min(length_m, max(WIDEST_STEP * c.widest, voxel));
+            float middle = t + 0.5 * length_m;
+            uint level;
+            // Not much narrower than the step, so that samples leave no gaps.
+            float diameter = min(max(2.0 * c.tangent * middle, length_m), max(c.widest, voxel));
+            vec4 value =
+                sample_voxels(c.origin + middle * c.direction, c.direction, diameter, level);
+            if (level >= voxels.level_count)
+                break;
 #if CONE_SKIP
-        if (value.a == 0.0)
-            length_m =
-                max(length_m, empty_distance(level, c.origin + middle * c.direction, c.direction));
+            if (value.a == 0.0)
+                length_m = max(length_m,
+                               empty_distance(level, c.origin + middle * c.direction, c.direction));
 #endif
-        float absorbed = passed * (1.0 - exp(-value.a * length_m));
-        result.light += value.rgb * (absorbed / max(value.a, 1e-12));
-        result.occlusion += absorbed * max(1.0 - middle / occlusion_reach_m, 0.0);
-        if (absorbed > maximum) {
-            maximum = absorbed;
-            result.hit_m = middle;
-            result.hit_diameter_m = diameter;
-            result.hit_density = value.a;
-        }
-        passed -= absorbed;
-        t += length_m;
-        // Where levels are coarser than the cone, steps follow them.
-        voxel = max(voxel, diameter < voxels.levels[level].voxel_edge_m
-                               ? voxels.levels[level].voxel_edge_m
-                               : 0.0);
+            float absorbed = passed * (1.0 - exp(-value.a * length_m));
+            result.light += value.rgb * (absorbed / max(value.a, 1e-12));
+            result.occlusion += absorbed * max(1.0 - middle / occlusion_reach_m, 0.0);
+            if (absorbed > maximum) {
+                maximum = absorbed;
+                result.hit_m = middle;
+                result.hit_diameter_m = diameter;
+                result.hit_density = value.a;
+            }
+            passed -= absorbed;
+            t += length_m;
+            // Where levels are coarser than the cone, steps follow them.
+            voxel = max(voxel, diameter < voxels.levels[level].voxel_edge_m
+                                   ? voxels.levels[level].voxel_edge_m
+                                   : 0.0);
+        } while (++i < CONE_MAX_STEPS && t < c.reach_m && passed > CONE_OPAQUE);
     }
     result.transmittance = passed > CONE_OPAQUE ? passed : 0.0;
     return result;

@@ -191,30 +191,34 @@ void apply_textures(triangle t, camera_ray ray, vec3 weights, material_block mat
 {
     texture_point point = find_texture_point(t, ray, weights);
 #if COLOR_CLASSES > 0
-    for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u;
-         slots &= slots - 1u) {
-        uint slot = uint(findLSB(slots));
-        vec4 texel = sample_color(material.first_texture + slot, point);
-        p.base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
-        p.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
-        p.specular_color *= slot == TEXTURE_SPECULAR_COLOR ? texel.rgb : vec3(1.0);
+    uint colors = material.texture_mask & COLOR_TEXTURE_SLOTS;
+    if (colors != 0u) {
+        do {
+            uint slot = uint(findLSB(colors));
+            vec4 texel = sample_color(material.first_texture + slot, point);
+            p.base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
+            p.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
+            p.specular_color *= slot == TEXTURE_SPECULAR_COLOR ? texel.rgb : vec3(1.0);
+        } while ((colors &= colors - 1u) != 0u);
     }
 #endif
 #if DATA_CLASSES > 0
     vec3 tangent_space = vec3(0.0, 0.0, 1.0);
-    for (uint slots = material.texture_mask & ~COLOR_TEXTURE_SLOTS; slots != 0u;
-         slots &= slots - 1u) {
-        uint slot = uint(findLSB(slots));
-        vec4 texel = sample_data(material.first_texture + slot, point);
-        p.roughness *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.g : 1.0;
-        p.metallic *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.b : 1.0;
-        p.occlusion +=
-            slot == TEXTURE_OCCLUSION ? material.occlusion_strength * (texel.r - 1.0) : 0.0;
-        p.transmission *= slot == TEXTURE_TRANSMISSION ? texel.r : 1.0;
-        p.specular *= slot == TEXTURE_SPECULAR ? texel.a : 1.0;
-        if (slot == TEXTURE_NORMAL)
-            tangent_space =
-                vec3((texel.xy * 2.0 - 1.0) * material.normal_scale, texel.z * 2.0 - 1.0);
+    uint data = material.texture_mask & ~COLOR_TEXTURE_SLOTS;
+    if (data != 0u) {
+        do {
+            uint slot = uint(findLSB(data));
+            vec4 texel = sample_data(material.first_texture + slot, point);
+            p.roughness *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.g : 1.0;
+            p.metallic *= slot == TEXTURE_METALLIC_ROUGHNESS ? texel.b : 1.0;
+            p.occlusion +=
+                slot == TEXTURE_OCCLUSION ? material.occlusion_strength * (texel.r - 1.0) : 0.0;
+            p.transmission *= slot == TEXTURE_TRANSMISSION ? texel.r : 1.0;
+            p.specular *= slot == TEXTURE_SPECULAR ? texel.a : 1.0;
+            if (slot == TEXTURE_NORMAL)
+                tangent_space =
+                    vec3((texel.xy * 2.0 - 1.0) * material.normal_scale, texel.z * 2.0 - 1.0);
+        } while ((data &= data - 1u) != 0u);
     }
     if ((material.texture_mask & (1u << TEXTURE_NORMAL)) != 0u)
         p.normal = mapped_normal(t, tangent_space, weights, p.normal);

@@ -20,11 +20,17 @@ vec3 voxel_light_at(vec3 world, vec3 direction)
 {
     vec3 position = voxel_position(world);
     uint level = 0u;
-    while (level < voxels.level_count && inside_level(level, position) < 0.0)
-        level++;
+    bool outside;
+    do {
+        outside = inside_level(level, position) < 0.0;
+        level += outside ? 1u : 0u;
+    } while (outside && level < voxels.level_count);
     vec4 value = vec4(0.0);
-    for (; level < voxels.level_count && value.a < HIT_DEPTH; level++)
-        value = sample_level(level, position, direction);
+    if (level < voxels.level_count) {
+        do {
+            value = sample_level(level, position, direction);
+        } while (++level < voxels.level_count && value.a < HIT_DEPTH);
+    }
     return value.a > 1e-6 ? value.rgb / value.a : vec3(0.0);
 }
 

@@ -243,21 +243,30 @@ vec3 direct_light(surface s, uvec2 pixel)
     vec3 sum = vec3(0.0);
 #if PUNCTUAL_LIGHTS && LIGHT_TILES
     uint tile = (pixel.y / LIGHT_TILE_EDGE) * frame.tile_count.x + pixel.x / LIGHT_TILE_EDGE;
-    for (uint word = 0u; word < frame.light_mask_words; word++) {
+    uint word = 0u;
+    do {
         uint mask = texelFetch(light_masks, int(tile * frame.light_mask_words + word)).x;
-        while (mask != 0u) {
-            uint bit = uint(findLSB(mask));
-            mask &= mask - 1u;
-            sum += punctual_light(s, load_light(word * 32u + bit));
+        if (mask != 0u) {
+            do {
+                sum += punctual_light(s, load_light(word * 32u + uint(findLSB(mask))));
+            } while ((mask &= mask - 1u) != 0u);
         }
-    }
+    } while (++word < frame.light_mask_words);
 #elif PUNCTUAL_LIGHTS
-    for (uint i = 0u; i < frame.light_count; i++)
-        sum += punctual_light(s, load_light(i));
+    uint light = 0u;
+    if (light < frame.light_count) {
+        do {
+            sum += punctual_light(s, load_light(light));
+        } while (++light < frame.light_count);
+    }
 #endif
 #if AREA_LIGHTS
-    for (uint i = 0u; i < frame.area_light_count; i++)
-        sum += area_light(s, load_area_light(i));
+    uint emitter = 0u;
+    if (emitter < frame.area_light_count) {
+        do {
+            sum += area_light(s, load_area_light(emitter));
+        } while (++emitter < frame.area_light_count);
+    }
 #endif
     return sum;
 }

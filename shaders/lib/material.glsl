@@ -172,9 +172,11 @@ vec4 sample_color(uint texture_number, texture_point point)
 {
     footprint f = find_footprint(texture_number, point);
     vec4 sum = vec4(0.0);
-    for (float i = 0.5; i < f.samples; i += 1.0)
+    float i = 0.5;
+    do {
         sum += sample_color_class(f.class_number, f.at + vec3(f.axis * (i / f.samples - 0.5), 0.0),
                                   f.lod);
+    } while ((i += 1.0) < f.samples);
     return sum / f.samples;
 }
 #endif
@@ -184,9 +186,11 @@ vec4 sample_data(uint texture_number, texture_point point)
 {
     footprint f = find_footprint(texture_number, point);
     vec4 sum = vec4(0.0);
-    for (float i = 0.5; i < f.samples; i += 1.0)
+    float i = 0.5;
+    do {
         sum += sample_data_class(f.class_number, f.at + vec3(f.axis * (i / f.samples - 0.5), 0.0),
                                  f.lod);
+    } while ((i += 1.0) < f.samples);
     return sum / f.samples;
 }
 #endif

@@ -29,11 +29,12 @@ float filtered_comparison(vec4 at)
     float lit = 0.0;
     float scale = taps > 1u ? PCF_RADIUS_TEXELS * texel * inversesqrt(float(taps)) : 0.0;
     vec2 direction = vec2(1.0, 0.0);
-    for (uint i = 0u; i < taps; i++) {
+    uint i = 0u;
+    do {
         vec2 offset = direction * (scale * sqrt(float(i) + 0.5));
         direction = GOLDEN_ROTATION * direction;
         lit += texture(shadow_map, at + vec4(offset, 0.0, 0.0));
-    }
+    } while (++i < taps);
     return lit / float(taps);
 }
 
@@ -89,7 +90,11 @@ uint refine_by_cascade(inout shadow_lookup lookup)
 {
     uint found = frame.cascade_count;
     shadow_lookup from = lookup;
-    for (uint i = frame.cascade_count; i-- > 0u;) {
+    uint i = frame.cascade_count;
+    if (i == 0u)
+        return found;
+    do {
+        i--;
         vec3 scale = frame.cascades[i].scale;
         vec3 at = from.at.xyw * scale + frame.cascades[i].offset;
         if (is_inside(at.xy)) {
@@ -97,7 +102,7 @@ uint refine_by_cascade(inout shadow_lookup lookup)
             lookup.lift = from.lift * (scale / scale.x);
             found = i;
         }
-    }
+    } while (i > 0u);
     return found;
 }
 

@@ -54,6 +54,15 @@ uint face_word(uint words, uint word)
     return face_words(words, word)[word & 3u];
 }
 
+// The faces that a cell has a record of, a bit each.
+uint cell_faces(uint cell)
+{
+    uvec2 x = cell_words(cell, 0u).zw; // from word CELL_FACES on
+    uvec4 yz = cell_words(cell, 4u);
+    return (x.x != 0u ? 1u : 0u) | (x.y != 0u ? 2u : 0u) | (yz.x != 0u ? 4u : 0u) |
+           (yz.y != 0u ? 8u : 0u) | (yz.z != 0u ? 16u : 0u) | (yz.w != 0u ? 32u : 0u);
+}
+
 // First word of a cell's face record; VOXEL_NONE if it has none.
 uint cell_face(uint cell, uint face)
 {

@@ -47,10 +47,14 @@ uint find_surfel(uint index_word, uint key, inout uint spare)
     for (;;) {
         uint entry = atomicOr(voxel_index[index_word], 0u);
         uint head = entry == 0u ? VOXEL_NONE : entry & ~VOXEL_TAG_SURFEL;
-        for (uint at = head; at != VOXEL_NONE && at != seen;
-             at = surfels[at * SURFEL_WORDS + SURFEL_NEXT])
-            if (surfels[at * SURFEL_WORDS + SURFEL_KEY] == key)
-                return at;
+        uint at = head;
+        if (at != VOXEL_NONE && at != seen) {
+            do {
+                if (surfels[at * SURFEL_WORDS + SURFEL_KEY] == key)
+                    return at;
+                at = surfels[at * SURFEL_WORDS + SURFEL_NEXT];
+            } while (at != VOXEL_NONE && at != seen);
+        }
         seen = head;
         if (spare == VOXEL_NONE)
             spare = allocate_surfel(key);

@@ -19,8 +19,11 @@ void store_voxel_face(uint level, ivec3 address, uint face, vec4 value)
     ivec3 shift =
         ivec3(equal(address, ivec3(0))) * edge - ivec3(equal(address, ivec3(edge - 1))) * edge;
     uint copies = (shift.x != 0 ? 1u : 0u) | (shift.y != 0 ? 2u : 0u) | (shift.z != 0 ? 4u : 0u);
-    for (uint subset = copies; subset != 0u; subset = (subset - 1u) & copies) {
+    uint subset = copies;
+    if (subset == 0u)
+        return;
+    do {
         ivec3 chosen = ivec3(subset & 1u, (subset >> 1) & 1u, subset >> 2);
         imageStore(voxel_image, base + address + shift * chosen, value);
-    }
+    } while ((subset = (subset - 1u) & copies) != 0u);
 }

@@ -41,9 +41,12 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
     if (number >= voxels.region_voxel_count)
         return false;
     uint i = 0u;
-    while (i + 1u < voxels.region_count &&
-           texelFetch(work_texels, int(2u * i + 3u)).w <= number) // its first voxel
-        i++;
+    bool later;
+    do {
+        later = i + 1u < voxels.region_count &&
+                texelFetch(work_texels, int(2u * i + 3u)).w <= number; // its first voxel
+        i += later ? 1u : 0u;
+    } while (later);
     voxel_region region = load_region(i);
     uvec3 size = uvec3(region.size);
     uint at = number - region.first_voxel;
@@ -61,13 +64,14 @@ bool region_voxel(uint number, out uint level, out ivec3 voxel)
 // Occupied voxels of the run, one bit each.
 #define FIND_OCCUPIED(run, out_bits)                                                               \
     uint out_bits = 0u;                                                                            \
-    for (uint i_ = 0u; i_ < REGION_RUN; i_++) {                                                    \
+    uint i_ = 0u;                                                                                  \
+    do {                                                                                           \
         uint level_;                                                                               \
         ivec3 voxel_;                                                                              \
         if (region_voxel((run)*REGION_RUN + i_, level_, voxel_) &&                                 \
             index_word(voxels.levels[level_].first_index + voxel_slot(level_, voxel_)) != 0u)      \
             out_bits |= 1u << i_;                                                                  \
-    }
+    } while (++i_ < REGION_RUN);
 
 // Groups of LINEAR_GROUP over x and y, since one dimension may hold only 65535 groups.
 uint region_invocation()

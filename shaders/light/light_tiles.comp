@@ -82,15 +82,17 @@ void main()
     uint tile_index = tile.y * frame.tile_count.x + tile.x;
     for (uint word = gl_LocalInvocationIndex; word < words; word += LINEAR_GROUP) {
         uint mask = 0u;
-        for (uint bit = 0u; bit < 32u && !empty; bit++) {
-            uint index = word * 32u + bit;
-            if (index >= frame.light_count)
-                break;
-            light_block light = load_light(index);
-            bool unlimited = light.type == LIGHT_DIRECTIONAL || light.range_m <= 0.0;
-            if (unlimited || sphere_in_tile(light.position - frame.eye, light.range_m, planes,
-                                            near_distance, far_distance))
-                mask |= 1u << bit;
+        uint end = empty ? 0u : min(frame.light_count - word * 32u, 32u);
+        uint bit = 0u;
+        if (bit < end) {
+            do {
+                uint index = word * 32u + bit;
+                light_block light = load_light(index);
+                bool unlimited = light.type == LIGHT_DIRECTIONAL || light.range_m <= 0.0;
+                if (unlimited || sphere_in_tile(light.position - frame.eye, light.range_m, planes,
+                                                near_distance, far_distance))
+                    mask |= 1u << bit;
+            } while (++bit < end);
         }
         light_masks[tile_index * words + word] = mask;
     }

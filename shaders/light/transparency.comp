@@ -23,7 +23,9 @@ uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
     uint count = 0u;
     vec3 direction = ray_direction(vec2(pixel));
     uint slot = fragment_word(head_index(pixel));
-    while (slot != 0u) {
+    if (slot == 0u)
+        return 0u;
+    do {
         uint base = fragment_index(slot - 1u);
         uint id = fragment_word(base + 1u);
         slot = fragment_word(base);
@@ -40,16 +42,20 @@ uint collect_layers(uvec2 pixel, out uint layers[MAX_BLENDED_LAYERS])
             count--;
         }
         uint at = count;
-        while (at > 0u && (distances[at - 1u] < along ||
-                           (distances[at - 1u] == along && layers[at - 1u] < id))) {
-            distances[at] = distances[at - 1u];
-            layers[at] = layers[at - 1u];
-            at--;
-        }
+        bool nearer = true;
+        do {
+            nearer = at > 0u && (distances[at - 1u] < along ||
+                                 (distances[at - 1u] == along && layers[at - 1u] < id));
+            if (nearer) {
+                distances[at] = distances[at - 1u];
+                layers[at] = layers[at - 1u];
+                at--;
+            }
+        } while (nearer);
         distances[at] = along;
         layers[at] = id;
         count++;
-    }
+    } while (slot != 0u);
     return count;
 }
 
@@ -124,7 +130,8 @@ void main()
         return;
     uint at = pixel.y * frame.render_size.x + pixel.x;
     vec3 sum = former_radiance(at);
-    for (uint i = 0u; i < count; i++) {
+    uint i = 0u;
+    do {
         transparent_layer through;
         surface s = load_surface(layers[i], pixel_camera_ray(vec2(pixel)), through);
         vec3 behind = sum;
@@ -133,6 +140,6 @@ void main()
             behind = mix(sum, refracted_light(s, through), through.alpha);
 #endif
         sum = behind * transmittance(s, through) + transparent_layer_radiance(s, through, pixel);
-    }
+    } while (++i < count);
     radiance[at] = vec4(sum, 1.0);
 }

@@ -14,9 +14,13 @@ void main()
     uvec2 tile = uvec2(number % count.x, number / count.x);
     uvec2 last = min((tile + 1u) * GROUP_EDGE, frame.render_size);
     uint any_head = 0u;
-    for (uint y = tile.y * GROUP_EDGE; y < last.y; y++)
-        for (uint x = tile.x * GROUP_EDGE; x < last.x; x++)
+    uint y = tile.y * GROUP_EDGE;
+    do {
+        uint x = tile.x * GROUP_EDGE;
+        do {
             any_head |= fragment_word(head_index(uvec2(x, y)));
+        } while (++x < last.x);
+    } while (++y < last.y);
     if (any_head != 0u)
         fragment_words[tile_index(atomicAdd(tile_count, 1u))] = tile.y * 65536u + tile.x;
 }

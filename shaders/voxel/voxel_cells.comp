@@ -41,6 +41,9 @@ void main()
 {
     uint run = region_invocation();
     FIND_OCCUPIED(run, occupied)
-    for (; occupied != 0u; occupied &= occupied - 1u)
+    if (occupied == 0u)
+        return;
+    do {
         make_cell(run * REGION_RUN + uint(findLSB(occupied)));
+    } while ((occupied &= occupied - 1u) != 0u);
 }

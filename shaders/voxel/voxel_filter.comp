@@ -73,12 +73,22 @@ void inherit_irradiance(uint slot, ivec3 corner)
     uint cell = index_word(voxels.levels[LEVEL].first_index + slot) - 1u;
     if (cell == VOXEL_NONE)
         return;
-    for (uint face = 0u; face < VOXEL_FACES; face++) {
+    uint children[8];
+    uint left = 0u; // faces that any of them has
+    for (int i = 0; i < 8; i++) {
+        children[i] = find_cell(FINER, corner + ivec3(i & 1, (i >> 1) & 1, i >> 2));
+        left |= children[i] == VOXEL_NONE ? 0u : cell_faces(children[i]);
+    }
+    if (left == 0u)
+        return;
+    do {
+        uint face = uint(findLSB(left));
         vec4 sum = vec4(0.0);
         float count = 0.0;
         uint like = VOXEL_NONE;
-        for (int i = 0; i < 8; i++) {
-            uint child = find_cell(FINER, corner + ivec3(i & 1, (i >> 1) & 1, i >> 2));
+        int i = 0;
+        do {
+            uint child = children[i];
             uint from = child == VOXEL_NONE ? VOXEL_NONE : cell_face(child, face);
             if (from == VOXEL_NONE)
                 continue;
@@ -88,7 +98,7 @@ void inherit_irradiance(uint slot, ivec3 corner)
             like = from;
             sum += face_light(from);
             count += 1.0;
-        }
+        } while (++i < 8);
         vec3 former;
         uint to =
             like == VOXEL_NONE ? VOXEL_NONE : make_face(cell, LEVEL, corner >> 1, face, former);
@@ -102,7 +112,7 @@ void inherit_irradiance(uint slot, ivec3 corner)
         faces[to + FACE_SHOWN] = halves.x;
         faces[to + FACE_SHOWN + 1u] = halves.y;
         faces[to + FACE_STATE] = FACE_VALID;
-    }
+    } while ((left &= left - 1u) != 0u);
 }
 #endif
 
@@ -117,8 +127,10 @@ void main()
 #if VOXEL_DIRECTIONS == 1
     store_voxel_face(LEVEL, address, 0u, filtered_mean(corner));
 #else
-    for (uint face = 0u; face < VOXEL_FACES; face++)
+    uint face = 0u;
+    do {
         store_voxel_face(LEVEL, address, face, filtered_face(corner, face));
+    } while (++face < VOXEL_FACES);
 #endif
 #if CLIP_LEVELS
     if (LEVEL < voxels.cell_level_count)

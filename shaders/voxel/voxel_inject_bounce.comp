@@ -24,8 +24,9 @@ void main()
     if (level < voxels.first_level || level >= voxels.end_level)
         return;
     face_sums sums = no_face_sums();
-    for (uint i = 0u; i < VOXEL_FACES; i++) {
-        uint words = cell_face(cell, i);
+    uint left = cell_faces(cell);
+    do {
+        uint words = left == 0u ? VOXEL_NONE : cell_face(cell, uint(findLSB(left)));
         uint direction = words == VOXEL_NONE ? VOXEL_NONE : face_word(words, FACE_NORMAL);
         if (direction == VOXEL_NONE)
             continue;
@@ -38,6 +39,6 @@ void main()
         direct.rgb += albedo * face_light(words).rgb;
 #endif
         add_face(sums, normal, direct);
-    }
+    } while ((left &= left - 1u) != 0u);
     store_faces(sums, level, word & CELL_SLOT_MASK);
 }

@@ -71,14 +71,17 @@ void append_mips(uint slot)
     ivec3 voxel = slot_voxel(base, slot);
     uint bits = voxels.level_count * voxels.list_capacity;
     uint first_bit = 0u;
-    for (uint mip = base + 1u; mip < voxels.level_count; mip++) {
+    uint mip = base + 1u;
+    if (mip >= voxels.level_count)
+        return;
+    do {
         uint coarse = voxel_slot(mip, voxel >> int(mip - base));
         uint number = first_bit + coarse;
         uint bit = 1u << (number & 31u);
         if ((atomicOr(list_words[bits + (number >> 5)], bit) & bit) == 0u)
             append(mip, coarse);
         first_bit += 1u << (3u * voxels.levels[mip].edge_log2);
-    }
+    } while (++mip < voxels.level_count);
 }
 
 void main()
@@ -87,7 +90,10 @@ void main()
     uint end = min(first + CELL_RUN, counters[COUNTER_CELLS]);
     bool mips = mips_are_dirty();
     uint lit = 0u, filtered = 0u, of_base = 0u; // a bit per cell
-    for (uint cell = first; cell < end; cell++) {
+    uint cell = first;
+    if (cell >= end)
+        return;
+    do {
         uint bit = 1u << (cell - first);
         uint word = cell_word(cell, 0u);
         uint list = list_of(word);
@@ -95,21 +101,29 @@ void main()
         filtered |= list != LIST_LIT && list != VOXEL_NONE ? bit : 0u;
         bool base = word != VOXEL_NONE && (word >> CELL_LEVEL_BIT) == voxels.cell_level_count - 1u;
         of_base |= mips && base ? bit : 0u;
-    }
+    } while (++cell < end);
     uint count = uint(bitCount(lit));
     uint at = atomicAdd(counters[COUNTER_LISTS + LIST_LIT * COUNTER_LIST_WORDS + 3u], count);
     if (at + count > voxels.list_capacity) {
         atomicOr(counters[COUNTER_OVERFLOW], OVERFLOW_POOLS);
         lit = 0u;
     }
-    for (; lit != 0u; lit &= lit - 1u)
-        list_words[LIST_LIT * voxels.list_capacity + at++] = first + uint(findLSB(lit));
-    for (; filtered != 0u; filtered &= filtered - 1u) {
-        uint word = cell_word(first + uint(findLSB(filtered)), 0u);
-        append(word >> CELL_LEVEL_BIT, word & CELL_SLOT_MASK);
+    if (lit != 0u) {
+        do {
+            list_words[LIST_LIT * voxels.list_capacity + at++] = first + uint(findLSB(lit));
+        } while ((lit &= lit - 1u) != 0u);
     }
-    for (; of_base != 0u; of_base &= of_base - 1u)
-        append_mips(cell_word(first + uint(findLSB(of_base)), 0u) & CELL_SLOT_MASK);
+    if (filtered != 0u) {
+        do {
+            uint word = cell_word(first + uint(findLSB(filtered)), 0u);
+            append(word >> CELL_LEVEL_BIT, word & CELL_SLOT_MASK);
+        } while ((filtered &= filtered - 1u) != 0u);
+    }
+    if (of_base != 0u) {
+        do {
+            append_mips(cell_word(first + uint(findLSB(of_base)), 0u) & CELL_SLOT_MASK);
+        } while ((of_base &= of_base - 1u) != 0u);
+    }
 }
 #elif STAGE == LISTS_TILE_ARGUMENTS
 void main()

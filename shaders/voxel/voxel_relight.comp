@@ -111,11 +111,12 @@ vec3 direct_irradiance(vec3 position, vec3 normal, bool thin, float voxel_m)
     s.thin = thin;
     mat3 axes = frame_about(normal);
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < TAPS; i++) {
+    int i = 0;
+    do {
         vec2 at = TAPS == 1 ? vec2(0.0) : vec2((i & 1) * 2 - 1, (i >> 1) * 2 - 1) * TAP_SPREAD;
         s.position = position + (axes[0] * at.x + axes[1] * at.y + normal * TAP_LIFT) * voxel_m;
         sum += direct_light(s, uvec2(0u));
-    }
+    } while (++i < TAPS);
     return sum / (float(TAPS) * voxels.radiance_scale);
 #else
     return vec3(0.0);
@@ -172,16 +173,18 @@ void main()
     if (level < voxels.first_level || level >= voxels.end_level)
         return;
 #if FRESH
-    for (uint i = 0u; i < VOXEL_FACES; i++)
-        if (cell_word(cell, CELL_FACES + i) != 0u)
-            return;
+    if (cell_faces(cell) != 0u)
+        return;
 #endif
     surfel_sum surfel_sums[VOXEL_FACES];
     for (uint i = 0u; i < VOXEL_FACES; i++)
         surfel_sums[i] =
             surfel_sum(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, false);
-    for (uint at = cell_word(cell, CELL_SURFEL); at != VOXEL_NONE;
-         at = surfel_word(at * SURFEL_WORDS + SURFEL_NEXT)) {
+    uint at = cell_word(cell, CELL_SURFEL);
+    if (at == VOXEL_NONE)
+        return;
+    uint found = 0u; // a bit a face
+    do {
         uint word = at * SURFEL_WORDS;
         uint key = surfel_word(word + SURFEL_KEY);
         uint surface_word = texelFetch(surfaces, int(voxels.instance_count + (key >> 3))).x;
@@ -192,18 +195,21 @@ void main()
             add_surfel(surfel_sums[(key & 7u) ^ 1u], word, m, directly, -1.0);
             surfel_sums[key & 7u].thin = true;
             surfel_sums[(key & 7u) ^ 1u].thin = true;
+            found |= 1u << ((key & 7u) ^ 1u);
         }
-    }
+        found |= 1u << (key & 7u);
+    } while ((at = surfel_word(at * SURFEL_WORDS + SURFEL_NEXT)) != VOXEL_NONE);
     face_sums sums = no_face_sums();
     ivec3 voxel = slot_voxel(level, slot);
-    for (uint i = 0u; i < VOXEL_FACES; i++) {
-        if (surfel_sums[i].weight == 0.0) {
-            uint old = cell_face(cell, i);
-            if (old != VOXEL_NONE)
-                faces[old + FACE_NORMAL] = VOXEL_NONE;
-            continue;
-        }
-        store_side(cell, level, voxel, i, surfel_sums[i], sums);
+    uint gone = cell_faces(cell) & ~found;
+    if (gone != 0u) {
+        do {
+            faces[cell_face(cell, uint(findLSB(gone))) + FACE_NORMAL] = VOXEL_NONE;
+        } while ((gone &= gone - 1u) != 0u);
     }
+    do {
+        uint i = uint(findLSB(found));
+        store_side(cell, level, voxel, i, surfel_sums[i], sums);
+    } while ((found &= found - 1u) != 0u);
     store_faces(sums, level, slot);
 }

@@ -151,13 +151,13 @@ void sample_surface(walk w, vec3 weights, inout voxel_fragment f)
         point.uv = uv[0] * weights.x + uv[1] * weights.y + uv[2] * weights.z;
         square_footprint(point, ((uv[1] - uv[0]) * e2.y - (uv[2] - uv[0]) * e1.y) * inverse,
                          ((uv[2] - uv[0]) * e1.x - (uv[1] - uv[0]) * e2.x) * inverse);
-        for (uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS; slots != 0u;
-             slots &= slots - 1u) {
+        uint slots = material.texture_mask & COLOR_TEXTURE_SLOTS;
+        do {
             uint slot = uint(findLSB(slots));
             vec4 texel = sample_color(material.first_texture + slot, point);
             base *= slot == TEXTURE_BASE_COLOR ? texel : vec4(1.0);
             f.emission *= slot == TEXTURE_EMISSIVE ? texel.rgb : vec3(1.0);
-        }
+        } while ((slots &= slots - 1u) != 0u);
     }
 #endif
     f.color = clamp(base.rgb, 0.0, 1.0);
@@ -214,12 +214,15 @@ void walk_column(inout walk w, ivec2 column)
     int first =
         int(clamp(ceil(minimum - 1e-6lf) - 1.0lf, double(w.low.z), double(w.high.z) + 1.0lf));
     int last = int(clamp(floor(maximum + 1e-6lf), double(w.low.z) - 1.0lf, double(w.high.z)));
-    for (int c = first; c <= last; c++) {
+    int c = first;
+    if (c > last)
+        return;
+    do {
         ivec3 voxel = ivec3(column, c);
         uint mask = touched_voxel_halves(w.t, dvec3(voxel));
         if (mask != 0u)
             add_voxel(w, voxel, mask);
-    }
+    } while (++c <= last);
 }
 
 #if LARGE
@@ -248,9 +251,11 @@ bool leave_tiles(walk w, uint instance, uint triangle_number, uint region)
             tiles[i] = voxel_tile(instance, triangle_number, region, 0xffffffffu);
         return false;
     }
-    for (uint i = 0u; i < total; i++)
+    uint i = 0u;
+    do {
         tiles[first + i] =
             voxel_tile(instance, triangle_number, region, (i % count.x) | ((i / count.x) << 16));
+    } while (++i < total);
     return true;
 }
 
@@ -269,8 +274,10 @@ void main()
     if (count > VOXEL_SMALL_COLUMNS &&
         leave_tiles(w, batch.instance, triangle_number, batch.region))
         return;
-    for (int i = 0; i < count; i++)
+    int i = 0;
+    do {
         walk_column(w, w.low.xy + ivec2(i % size.x, i / size.x));
+    } while (++i < count);
     give_back_surfel(w.spare);
 }
 #endif

@@ -13,6 +13,7 @@ import { findBanned, judgeBanned, wordsOf } from './identifiers.mjs';
 import { findForeignGlCalls, findIncludes, judgeIncludes, judgeLayers } from './includes.mjs';
 import { readJsWords } from './js_words.mjs';
 import { findExcesses, judgeExcesses } from './lengths.mjs';
+import { findLoopsTestedFirst, judgeLoops } from './shader_loops.mjs';
 import { findReadBlocks, judgeReadBlocks } from './storage_reads.mjs';
 
 const file = (path, text) => ({ path, text, language: languageOf(path) });
@@ -368,6 +369,33 @@ describe('storage blocks', () => {
     const listed = { 'shaders/x/x.comp': { b_storage: 'atomics', a_storage: 'no longer' } };
     assert.deepEqual(judgeReadBlocks(found, listed), [
       'shaders/x/x.comp: a_storage is only written: take it off the list',
+    ]);
+  });
+});
+
+describe('loops of shaders', () => {
+  const text = `
+    for (uint i = 0u; i < frame.light_count; i++) {}
+    while (at != 0u) {}
+    for (int i = 0; i < 8; i++) {}
+    for (uint i = 0u; i < uint(STEP * STEP); i++) {}
+    for (;;) {}
+    do {
+    } while (++i < count);
+    // while (true)`;
+  const found = findLoopsTestedFirst([{ path: 'shaders/x/x.comp', language: 'GLSL', text }]);
+
+  test('that test at their start are found', () => {
+    assert.deepEqual([...found], [['shaders/x/x.comp', 2]]);
+    assert.deepEqual(judgeLoops(found, {}), [
+      'shaders/x/x.comp: 2 loops test at their start: use do ... while',
+    ]);
+  });
+
+  test('may be listed, and the list may only shrink', () => {
+    assert.deepEqual(judgeLoops(found, { 'shaders/x/x.comp': { loops: 2, reason: '' } }), []);
+    assert.deepEqual(judgeLoops(found, { 'shaders/x/x.comp': { loops: 3, reason: '' } }), [
+      'shaders/x/x.comp: fewer loops test at their start: correct the list',
     ]);
   });
 });

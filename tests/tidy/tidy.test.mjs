@@ -14,6 +14,7 @@ import { findBanned, judgeBanned } from './identifiers.mjs';
 import { findForeignGlCalls, findIncludes, judgeIncludes, judgeLayers } from './includes.mjs';
 import { LAYERS, UPWARD } from './layers.mjs';
 import { findExcesses, judgeExcesses } from './lengths.mjs';
+import { LOOPS_TESTED_FIRST, findLoopsTestedFirst, judgeLoops } from './shader_loops.mjs';
 import { READ_BLOCKS, findReadBlocks, judgeReadBlocks } from './storage_reads.mjs';
 import { BANNED } from './words.mjs';
 
@@ -54,6 +55,11 @@ test('shaders include nothing under a condition that others would miss', () => {
 test('shaders read storage blocks only where they must', () => {
   const shaders = sources.filter(({ language }) => language === 'GLSL');
   assertNone(judgeReadBlocks(findReadBlocks(shaders), READ_BLOCKS));
+});
+
+test('loops of shaders test at their end', () => {
+  const shaders = sources.filter(({ language }) => language === 'GLSL');
+  assertNone(judgeLoops(findLoopsTestedFirst(shaders), LOOPS_TESTED_FIRST));
 });
 
 test('renderer/gpu alone calls GL and EGL', () => {
