@@ -28,6 +28,9 @@ void draw_list_finish(struct draw_list *list)
 {
     free(list->scratch_commands);
     free(list->scratch_records);
+    free(list->scratch_indices);
+    gpu_geometry_destroy(&list->geometry);
+    gpu_buffer_destroy(&list->indices);
     gpu_buffer_destroy(&list->commands);
     gpu_buffer_destroy(&list->records);
     *list = (struct draw_list){0};
@@ -126,15 +129,15 @@ static bool cluster_is_hidden(const struct instance_cull *cull,
            cluster->cutoff * glm_vec3_norm(from_eye) + cluster->radius;
 }
 
-// Appends one draw: triangles first to first + count - 1 of an instance.
+// Appends one draw of an instance.
 static void append_draw(struct draw_list *list, uint32_t *total, const struct gpu_scene *gpu_scene,
                         const struct gpu_scene_instance *instance, const struct instance_cull *cull,
-                        uint32_t first, uint32_t count)
+                        uint32_t index_first, uint32_t index_count)
 {
     list->scratch_commands[*total] = (struct gpu_draw){
-        .index_count = 3 * count,
+        .index_count = index_count,
         .instance_count = 1,
-        .index_first = instance->index_first + 3 * first,
+        .index_first = index_first,
         .base_instance = *total,
     };
     struct gpu_draw_record *record = &list->scratch_records[*total];
@@ -162,30 +165,88 @@ static void append_instance(struct draw_list *list, uint32_t *total,
                 run_first = at;
             run_count += count;
         } else if (run_count > 0) {
-            append_draw(list, total, gpu_scene, instance, cull, run_first, run_count);
+            append_draw(list, total, gpu_scene, instance, cull,
+                        instance->index_first + 3 * run_first, 3 * run_count);
             run_count = 0;
         }
     }
     if (run_count > 0)
-        append_draw(list, total, gpu_scene, instance, cull, run_first, run_count);
+        append_draw(list, total, gpu_scene, instance, cull, instance->index_first + 3 * run_first,
+                    3 * run_count);
 }
 
-void draw_list_fill(struct draw_list *list, const struct gpu_scene *gpu_scene,
-                    const mat4 clip_from_world, const float *eye)
+static bool reserve_indices(struct draw_list *list, uint32_t wanted)
+{
+    if (list->index_capacity >= wanted)
+        return true;
+    uint32_t capacity = wanted + wanted / 2;
+    uint32_t *grown = realloc(list->scratch_indices, capacity * sizeof(*grown));
+    if (!grown)
+        return false;
+    list->scratch_indices = grown;
+    list->index_capacity = capacity;
+    return true;
+}
+
+// Copies the indices of an instance's blocks that the filter admits, and appends a draw of them.
+static bool append_blocks(struct draw_list *list, uint32_t *total, uint32_t *index_total,
+                          const struct gpu_scene *gpu_scene, uint32_t instance_number,
+                          const struct instance_cull *cull, const struct draw_filter *filter)
+{
+    const struct gpu_scene_instance *instance = &gpu_scene->instances[instance_number];
+    const uint32_t *indices = gpu_buffer_mapping(gpu_scene->raster_indices);
+    const uint32_t block_count = ((instance->index_count / 3 - 1) >> DRAW_BLOCK_BITS) + 1;
+    const uint32_t blocks_log2 = ID_BLOCK_BITS - DRAW_BLOCK_BITS; // in a cluster
+    uint32_t first = *index_total;
+    bool hidden = false;
+    for (uint32_t i = 0; i < block_count; i++) {
+        if ((i & ((1u << blocks_log2) - 1u)) == 0)
+            hidden = cluster_is_hidden(
+                cull, &gpu_scene->clusters[instance->cluster_first + (i >> blocks_log2)]);
+        struct draw_block block = {
+            .number = (instance->first_id >> DRAW_BLOCK_BITS) + i,
+            .box = &gpu_scene->boxes[((size_t)instance->cluster_first << blocks_log2) + i],
+            .clip_rows = cull->clip_rows,
+        };
+        if (hidden || !filter->admits(filter->user, &block))
+            continue;
+        uint32_t at = i * (3u << DRAW_BLOCK_BITS);
+        uint32_t left = instance->index_count - at;
+        uint32_t count = left < (3u << DRAW_BLOCK_BITS) ? left : 3u << DRAW_BLOCK_BITS;
+        if (!reserve_indices(list, *index_total + count))
+            return false;
+        memcpy(list->scratch_indices + *index_total, indices + instance->index_first + at,
+               count * sizeof(*indices));
+        *index_total += count;
+    }
+    if (*index_total > first)
+        append_draw(list, total, gpu_scene, instance, cull, first, *index_total - first);
+    return true;
+}
+
+// Lists all groups up to `end`, by blocks if there is a filter.
+static bool list_groups(struct draw_list *list, const struct gpu_scene *gpu_scene,
+                        const mat4 clip_from_world, const float *eye, uint32_t end,
+                        const struct draw_filter *filter, uint32_t *out_index_total)
 {
     vec4 planes[6];
     extract_planes(clip_from_world, planes);
     uint32_t total = 0;
-    for (uint32_t group = 0; group < DRAW_GROUP_COUNT; group++) {
+    *out_index_total = 0;
+    memset(list->count, 0, sizeof(list->count));
+    for (uint32_t group = 0; group < end; group++) {
         list->first[group] = total;
         for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
             const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
-            if (!instance->visible || instance->group != group ||
+            if (!instance->visible || instance->group != group || instance->index_count < 3 ||
                 box_is_outside((const vec4 *)planes, instance->bounds_min, instance->bounds_max))
                 continue;
             struct instance_cull cull;
             instance_cull_init(&cull, instance, (const vec4 *)planes, clip_from_world, eye);
-            append_instance(list, &total, gpu_scene, i, &cull);
+            if (!filter)
+                append_instance(list, &total, gpu_scene, i, &cull);
+            else if (!append_blocks(list, &total, out_index_total, gpu_scene, i, &cull, filter))
+                return false;
         }
         list->count[group] = total - list->first[group];
     }
@@ -193,6 +254,44 @@ void draw_list_fill(struct draw_list *list, const struct gpu_scene *gpu_scene,
                      list->scratch_commands);
     gpu_buffer_write(list->records, 0, total * sizeof(*list->scratch_records),
                      list->scratch_records);
+    return true;
+}
+
+void draw_list_fill(struct draw_list *list, const struct gpu_scene *gpu_scene,
+                    const mat4 clip_from_world, const float *eye)
+{
+    uint32_t no_indices;
+    list_groups(list, gpu_scene, clip_from_world, eye, DRAW_GROUP_COUNT, NULL, &no_indices);
+}
+
+bool draw_list_fill_blocks(struct draw_list *list, const struct gpu_scene *gpu_scene,
+                           const mat4 clip_from_world, const float *eye,
+                           const struct draw_filter *filter)
+{
+    uint32_t count;
+    if (!draw_list_reserve(list, gpu_scene) ||
+        !list_groups(list, gpu_scene, clip_from_world, eye, DRAW_TRANSPARENT * DRAW_CULL_COUNT,
+                     filter, &count))
+        return false;
+    gpu_geometry_destroy(&list->geometry);
+    if (count == 0)
+        return true;
+    if (!gpu_buffer_ensure(gpu_scene->gpu, &list->indices, "view_targets.draws", GPU_BUFFER_STATIC,
+                           list->index_capacity * sizeof(*list->scratch_indices)))
+        return false;
+    gpu_buffer_write(list->indices, 0, count * sizeof(*list->scratch_indices),
+                     list->scratch_indices);
+    list->geometry = gpu_geometry_create(gpu_scene->gpu, gpu_scene->raster_vertices, list->indices);
+    return list->geometry != NULL;
+}
+
+uint32_t draw_list_opaque_triangles(const struct draw_list *list)
+{
+    uint32_t indices = 0;
+    for (uint32_t group = 0; group < DRAW_TRANSPARENT * DRAW_CULL_COUNT; group++)
+        for (uint32_t i = 0; i < list->count[group]; i++)
+            indices += list->scratch_commands[list->first[group] + i].index_count;
+    return indices / 3;
 }
 
 void draw_list_draw(const struct draw_list *list, const struct gpu_scene *gpu_scene,
@@ -203,7 +302,7 @@ void draw_list_draw(const struct draw_list *list, const struct gpu_scene *gpu_sc
         gpu_draw_indirect(gpu_scene->gpu,
                           &(struct gpu_draw_params){
                               .program = program,
-                              .geometry = gpu_scene->geometry,
+                              .geometry = list->geometry ? list->geometry : gpu_scene->geometry,
                               .draws = list->commands,
                               .records = list->records,
                               .first = list->first[group],

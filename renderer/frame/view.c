@@ -56,6 +56,7 @@ void view_destroy(struct view **view_slot)
         gpu_buffer_destroy(&view->buffers[i]);
     view_release_cascades(view);
     draw_list_finish(&view->draws);
+    occlusion_finish(&view->occlusion);
     draw_list_finish(&view->shadow_draws);
     gpu_buffer_destroy(&view->frame_block);
     gpu_buffer_destroy(&view->settings_block);

@@ -5,6 +5,7 @@
 #include "renderer/frame/draw_list.h"
 #include "renderer/frame/frame_pixels.h"
 #include "renderer/frame/frame_plan.h"
+#include "renderer/frame/occlusion.h"
 #include "renderer/frame/resource.h"
 #include "renderer/gpu/buffer.h"
 #include "renderer/gpu/texture.h"
@@ -43,6 +44,7 @@ struct view {
     struct gpu_framebuffer *list_framebuffer;   // depth alone, for transparent lists
     struct gpu_buffer *buffers[RESOURCE_COUNT]; // of the rows that are the view's own
     struct draw_list draws;
+    struct occlusion occlusion;
     struct draw_list shadow_draws;
 
     struct gpu_buffer *shadow_views; // the scene's and then this view's cascades

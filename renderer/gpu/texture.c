@@ -126,6 +126,13 @@ void gpu_texture_read(const struct gpu_texture *texture, float *out_texels, size
     glGetTextureImage(texture->name, 0, GL_RGBA, GL_FLOAT, (GLsizei)size_bytes, out_texels);
 }
 
+void gpu_texture_fetch(const struct gpu_texture *texture, void *out_pixels, size_t size_bytes)
+{
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glGetTextureImage(texture->name, 0, formats[texture->params.format].format,
+                      formats[texture->params.format].type, (GLsizei)size_bytes, out_pixels);
+}
+
 void gpu_bind_image(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture)
 {
     (void)gpu;

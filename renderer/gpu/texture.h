@@ -47,6 +47,10 @@ void gpu_texture_clear(struct gpu_texture *texture);
 // Copies a 3D texture to host memory, 4 floats per texel, x fastest; waits for the GPU. For tests.
 void gpu_texture_read(const struct gpu_texture *texture, float *out_texels, size_t size_bytes);
 
+// Copies a 2D texture to host memory, in the form that gpu_texture_write() takes; waits for the
+// GPU.
+void gpu_texture_fetch(const struct gpu_texture *texture, void *out_pixels, size_t size_bytes);
+
 void gpu_texture_generate_levels(struct gpu_texture *texture);
 uint32_t gpu_texture_name(const struct gpu_texture *texture);
 uint64_t gpu_texture_size_bytes(const struct gpu_texture *texture);

@@ -10,16 +10,22 @@
 #define MIN_CONE_COSINE 0.1f
 #define NO_CONE         2.0f
 
+static void bound_vertices(const struct scene *scene, const uint32_t *indices, uint32_t count,
+                           vec3 out_low, vec3 out_high)
+{
+    glm_vec3_fill(out_low, INFINITY);
+    glm_vec3_fill(out_high, -INFINITY);
+    for (uint32_t i = 0; i < count; i++) {
+        glm_vec3_minv(out_low, scene->vertices[indices[i]].position, out_low);
+        glm_vec3_maxv(out_high, scene->vertices[indices[i]].position, out_high);
+    }
+}
+
 static void bound_triangles(const struct scene *scene, const uint32_t *indices, uint32_t count,
                             struct gpu_scene_cluster *cluster)
 {
     vec3 low, high;
-    glm_vec3_fill(low, INFINITY);
-    glm_vec3_fill(high, -INFINITY);
-    for (uint32_t i = 0; i < count; i++) {
-        glm_vec3_minv(low, scene->vertices[indices[i]].position, low);
-        glm_vec3_maxv(high, scene->vertices[indices[i]].position, high);
-    }
+    bound_vertices(scene, indices, count, low, high);
     glm_vec3_center(low, high, cluster->center);
     float squared = 0.0f;
     for (uint32_t i = 0; i < count; i++)
@@ -61,6 +67,16 @@ static void bound_normals(const struct scene *scene, const uint32_t *indices, ui
         narrowest > MIN_CONE_COSINE ? sqrtf(1.0f - narrowest * narrowest) + 1e-3f : NO_CONE;
 }
 
+// Bounds of each block of a cluster.
+static void bound_blocks(const struct scene *scene, const uint32_t *indices, uint32_t count,
+                         struct gpu_scene_box *boxes)
+{
+    const uint32_t block_indices = 3u << DRAW_BLOCK_BITS;
+    for (uint32_t at = 0; at < count; at += block_indices, boxes++)
+        bound_vertices(scene, indices + at, count - at < block_indices ? count - at : block_indices,
+                       boxes->low, boxes->high);
+}
+
 bool gpu_scene_build_clusters(struct gpu_scene *gpu_scene)
 {
     const struct scene *scene = gpu_scene->scene;
@@ -74,8 +90,16 @@ bool gpu_scene_build_clusters(struct gpu_scene *gpu_scene)
         total += (scene->primitives[i].index_count + cluster_indices - 1) / cluster_indices;
     }
     free(gpu_scene->clusters);
+    free(gpu_scene->boxes);
     gpu_scene->clusters = malloc((total ? total : 1) * sizeof(*gpu_scene->clusters));
-    for (uint32_t i = 0; i < scene->primitive_count && gpu_scene->clusters; i++) {
+    gpu_scene->boxes = NULL;
+    bool with_boxes = gpu_get_info(gpu_scene->gpu)->software;
+    if (with_boxes)
+        gpu_scene->boxes =
+            malloc(((size_t)(total ? total : 1) << (ID_BLOCK_BITS - DRAW_BLOCK_BITS)) *
+                   sizeof(*gpu_scene->boxes));
+    bool done = gpu_scene->clusters && (gpu_scene->boxes || !with_boxes);
+    for (uint32_t i = 0; i < scene->primitive_count && done; i++) {
         const struct scene_primitive *primitive = &scene->primitives[i];
         for (uint32_t at = 0; at < primitive->index_count; at += cluster_indices) {
             uint32_t left = primitive->index_count - at;
@@ -85,10 +109,14 @@ bool gpu_scene_build_clusters(struct gpu_scene *gpu_scene)
                 &gpu_scene->clusters[firsts[i] + at / cluster_indices];
             bound_triangles(scene, indices, count, cluster);
             bound_normals(scene, indices, count, cluster);
+            if (with_boxes)
+                bound_blocks(scene, indices, count,
+                             gpu_scene->boxes + ((size_t)(firsts[i] + at / cluster_indices)
+                                                 << (ID_BLOCK_BITS - DRAW_BLOCK_BITS)));
         }
     }
     for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
         gpu_scene->instances[i].cluster_first = firsts[gpu_scene->instances[i].primitive];
     free(firsts);
-    return gpu_scene->clusters != NULL;
+    return done;
 }

@@ -76,6 +76,7 @@ void gpu_scene_destroy(struct gpu_scene **gpu_scene_slot)
     gpu_texture_destroy(&gpu_scene->environment_background);
     free(gpu_scene->instances);
     free(gpu_scene->clusters);
+    free(gpu_scene->boxes);
     free(gpu_scene);
 }
 

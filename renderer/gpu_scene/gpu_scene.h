@@ -45,6 +45,13 @@ struct gpu_scene_cluster {
     float cutoff; // 2 if the normals spread too far to cull
 };
 
+// Bounds of up to 2^DRAW_BLOCK_BITS triangles of a primitive, in local space.
+#define DRAW_BLOCK_BITS 5
+struct gpu_scene_box {
+    float low[3];
+    float high[3];
+};
+
 struct gpu_scene_instance {
     uint32_t node;
     float world_from_local[16]; // the node's, to gpu_scene.origin
@@ -89,10 +96,12 @@ struct gpu_scene {
     struct gpu_buffer *vertices;
     struct gpu_buffer *indices;
     struct gpu_buffer *raster_vertices;
-    struct gpu_buffer *raster_indices; // same triangles as `indices`, but rotated
-    struct gpu_geometry *geometry;     // of the raster buffers
+    struct gpu_buffer
+        *raster_indices;           // same triangles as `indices`, but rotated; CPU drivers: mapped
+    struct gpu_geometry *geometry; // of the raster buffers
     struct gpu_scene_instance *instances;
     struct gpu_scene_cluster *clusters; // of all primitives
+    struct gpu_scene_box *boxes;        // likewise, a cluster's blocks in a row; CPU drivers only
     uint32_t cluster_count;             // of all instances: maximum number of draws
     bool drawable;                      // there is any triangle
     float bounds_min[3];

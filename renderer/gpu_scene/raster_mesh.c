@@ -102,9 +102,12 @@ bool gpu_scene_upload_raster_mesh(struct gpu_scene *gpu_scene)
         gpu_scene->raster_vertices =
             gpu_buffer_create(gpu_scene->gpu, "geometry.raster_vertices", GPU_BUFFER_STATIC,
                               builder.count * sizeof(*builder.vertices), builder.vertices);
+        builder.indices[scene->index_count] = 0; // so that no buffer is too small to be bound
+        bool mapped = gpu_get_info(gpu_scene->gpu)->software;
         gpu_scene->raster_indices =
-            gpu_buffer_create(gpu_scene->gpu, "geometry.raster_indices", GPU_BUFFER_STATIC,
-                              scene->index_count * sizeof(uint32_t), builder.indices);
+            gpu_buffer_create(gpu_scene->gpu, "geometry.raster_indices",
+                              mapped ? GPU_BUFFER_READBACK : GPU_BUFFER_STATIC,
+                              (scene->index_count + 1u) * sizeof(uint32_t), builder.indices);
         done = gpu_scene->raster_vertices && gpu_scene->raster_indices;
     }
     if (done)
