@@ -2,16 +2,67 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "renderer/gpu/internal.h"
+
+// Smaller buffers stay with the driver: a mapping takes whole pages.
+#define PINNED_MIN_BYTES (64u << 10)
+// CPU drivers read whole vectors, past a buffer's end.
+#define PINNED_SLACK_BYTES 256u
+// Below that, huge pages would take more than they save.
+#define HUGE_PAGES_MIN_BYTES (8u << 20)
 
 struct gpu_buffer {
     struct gpu_allocation allocation;
     GLuint name;
     size_t size_bytes;
     const void *mapping;
+    void *pinned; // memory of ours that the buffer lies in; NULL: the driver's
+    size_t pinned_bytes;
     GLuint textures[GPU_TEXEL_COUNT]; // the buffer as texels; 0 until needed
 };
+
+// Memory of zeros for a buffer. Until it is written it takes none, and no time: llvmpipe writes all
+// of a buffer of its own, 3 ms a MiB where the kernel has to find new pages.
+static bool map_pinned(struct gpu_buffer *buffer)
+{
+    size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    size_t bytes = (buffer->size_bytes + PINNED_SLACK_BYTES + page - 1) / page * page;
+    void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED)
+        return false;
+    if (bytes >= HUGE_PAGES_MIN_BYTES)
+        madvise(memory, bytes, MADV_HUGEPAGE); // fails where the kernel has none, which is fine
+    buffer->pinned = memory;
+    buffer->pinned_bytes = bytes;
+    return true;
+}
+
+// Gives a new buffer its storage: `data`, or zeros.
+static void create_storage(struct gpu *gpu, struct gpu_buffer *buffer, const void *data,
+                           size_t data_bytes)
+{
+    bool whole = data && data_bytes == buffer->size_bytes;
+    GLsizeiptr size = (GLsizeiptr)buffer->size_bytes;
+    if (gpu->pinned_memory && buffer->size_bytes >= PINNED_MIN_BYTES && map_pinned(buffer)) {
+        if (data)
+            memcpy(buffer->pinned, data, data_bytes);
+        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, buffer->name);
+        glBufferStorage(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, size, buffer->pinned,
+                        GL_DYNAMIC_STORAGE_BIT);
+        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, 0);
+        return;
+    }
+    glNamedBufferStorage(buffer->name, size, whole ? data : NULL, GL_DYNAMIC_STORAGE_BIT);
+    if (!whole)
+        gpu_buffer_clear(buffer);
+    if (data && !whole)
+        gpu_buffer_write(buffer, 0, data_bytes, data);
+}
 
 struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gpu_buffer_kind kind,
                                      size_t size_bytes, const void *data)
@@ -22,19 +73,15 @@ struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gp
     buffer->size_bytes = size_bytes < GPU_BUFFER_MIN_BYTES ? GPU_BUFFER_MIN_BYTES : size_bytes;
     gpu_account(gpu, &buffer->allocation, label, buffer->size_bytes);
     glCreateBuffers(1, &buffer->name);
-    GLbitfield flags = GL_DYNAMIC_STORAGE_BIT;
     if (kind == GPU_BUFFER_READBACK)
-        flags =
-            GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT | GL_CLIENT_STORAGE_BIT;
-    bool whole = data && size_bytes == buffer->size_bytes;
-    glNamedBufferStorage(buffer->name, (GLsizeiptr)buffer->size_bytes, whole ? data : NULL, flags);
+        glNamedBufferStorage(buffer->name, (GLsizeiptr)buffer->size_bytes, NULL,
+                             GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT |
+                                 GL_CLIENT_STORAGE_BIT | GL_DYNAMIC_STORAGE_BIT);
+    else
+        create_storage(gpu, buffer, data, size_bytes);
     if (gpu_take_out_of_memory(gpu))
         goto fail;
     glObjectLabel(GL_BUFFER, buffer->name, -1, label);
-    if (!whole)
-        gpu_buffer_clear(buffer);
-    if (data && !whole && size_bytes > 0)
-        gpu_buffer_write(buffer, 0, size_bytes, data);
     if (kind == GPU_BUFFER_READBACK) {
         buffer->mapping =
             glMapNamedBufferRange(buffer->name, 0, (GLsizeiptr)buffer->size_bytes,
@@ -56,6 +103,10 @@ void gpu_buffer_destroy(struct gpu_buffer **buffer_slot)
         return;
     glDeleteTextures(GPU_TEXEL_COUNT, buffer->textures);
     glDeleteBuffers(1, &buffer->name);
+    if (buffer->pinned) {
+        glFinish(); // draws may still read it
+        munmap(buffer->pinned, buffer->pinned_bytes);
+    }
     gpu_unaccount(&buffer->allocation);
     free(buffer);
 }

@@ -103,6 +103,7 @@ struct gpu *gpu_create(const char *choice, const char *shader_dir, struct error 
     glEnable(GL_DEPTH_TEST);
     glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gpu->pinned_memory = gpu->info.software && epoxy_has_gl_extension("GL_AMD_pinned_memory");
     gpu->info.gpu_timers = !gpu->info.software && gpu_timer_probe(gpu);
     return gpu;
 fail:
