@@ -44,9 +44,9 @@ static const char *find_shader_dir(const struct renderer_params *params)
     return VOXCAST_INSTALL_SHARE_DIR "/shaders";
 }
 
-void renderer_prepare_process(void)
+void renderer_prepare_process(char *const arguments[])
 {
-    gpu_prepare_process();
+    gpu_prepare_process(arguments);
 }
 
 struct renderer *renderer_create(const struct renderer_params *params, struct error *out_error)

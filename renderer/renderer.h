@@ -64,9 +64,9 @@ struct renderer_params {
     void *user;
 };
 
-// For programs: call first in main(), before there are threads. A renderer on a CPU then uses its
-// processors better; without it everything works, too.
-void renderer_prepare_process(void);
+// For programs: call first in main(), with its arguments: the program may start once more. A
+// renderer on a CPU then uses its processors and memory better; without it everything works, too.
+void renderer_prepare_process(char *const arguments[]);
 
 // On failure returns NULL; the message names what is missing and what to install.
 struct renderer *renderer_create(const struct renderer_params *params, struct error *out_error);

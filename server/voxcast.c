@@ -27,7 +27,7 @@ static const char usage[] =
 
 int main(int argc, char **argv)
 {
-    renderer_prepare_process();
+    renderer_prepare_process(argv);
     log_set_level(LOG_ERROR);
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
         strcmp(argv[1], "help") == 0) {

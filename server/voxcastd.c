@@ -219,7 +219,7 @@ int main(int argument_count, char **arguments)
 {
     static struct daemon daemon;
     struct error error = {""};
-    renderer_prepare_process();
+    renderer_prepare_process(arguments);
     enum options_result result =
         options_read(argument_count, arguments, environ, &daemon.options, &error);
     if (result == OPTIONS_HELP) {

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "renderer/gpu/internal.h"
 
@@ -160,11 +161,44 @@ static int count_processors(void)
     return count;
 }
 
+// Whether the kernel gives huge pages to who asks for them, and only then.
+static bool huge_pages_on_demand(void)
+{
+    char text[64] = "";
+    FILE *file = fopen("/sys/kernel/mm/transparent_hugepage/enabled", "r");
+    if (!file)
+        return false;
+    bool read = fgets(text, sizeof(text), file) != NULL;
+    fclose(file);
+    return read && strstr(text, "[madvise]");
+}
+
+// Has malloc() ask for huge pages, which it reads from the environment when the program starts: so
+// the program starts once more. A CPU driver keeps its textures there, and writes all of each when
+// it is made: 0.1 s of the 1.1 s that the Cornell box takes to its first frame, and a fifth of
+// Sponza's.
+static void use_huge_pages(char *const arguments[])
+{
+    char path[1024], tunables[1024];
+    const char *given = getenv("GLIBC_TUNABLES");
+    if ((given && strstr(given, "glibc.malloc.hugetlb")) || !huge_pages_on_demand())
+        return;
+    ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - 1);
+    int used = snprintf(tunables, sizeof(tunables), "%s%sglibc.malloc.hugetlb=1",
+                        given ? given : "", given && *given ? ":" : "");
+    if (length <= 0 || used >= (int)sizeof(tunables))
+        return;
+    path[length] = '\0';
+    setenv("GLIBC_TUNABLES", tunables, 1);
+    execv(path, arguments); // returns only where it fails, which costs speed alone
+}
+
 // llvmpipe splits a dispatch into one run of groups a thread, once, however dear its groups are.
 // With two threads a processor the dearest run is half as long. It has 32 threads at most, and
 // reads the variable when its display is opened.
-void gpu_prepare_process(void)
+void gpu_prepare_process(char *const arguments[])
 {
+    use_huge_pages(arguments);
     int count = count_processors();
     char text[16];
     snprintf(text, sizeof(text), "%d", count < 16 ? 2 * count : 32);

@@ -19,9 +19,10 @@ struct gpu_texture;
 struct gpu_program;
 struct gpu_framebuffer;
 
-// Sets what a CPU driver reads from the environment, unless it is set. Call once, before the
-// process has threads.
-void gpu_prepare_process(void);
+// Sets what a CPU driver and its malloc() read from the environment, unless it is set; where
+// malloc() must know it from the start, executes the program anew with main()'s `arguments`. Call
+// first.
+void gpu_prepare_process(char *const arguments[]);
 
 // `gpu` is "auto", "software" or a device index. On failure the message names what is missing.
 struct gpu *gpu_create(const char *gpu, const char *shader_dir, struct error *out_error);
