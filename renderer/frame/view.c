@@ -111,7 +111,8 @@ bool view_reserve(struct view *view, struct gpu_scene *gpu_scene, uint32_t casca
 {
     return draw_list_reserve(&view->draws, gpu_scene) &&
            draw_list_reserve(&view->shadow_draws, gpu_scene) &&
-           prepare_cascades(view, gpu_scene->shadow_map, cascade_count);
+           prepare_cascades(view, gpu_scene->shadow_map, cascade_count) &&
+           shadow_map_allocate(gpu_scene->shadow_map);
 }
 
 // A buffer has exactly the size that its row asks for: what another size or effect has left is

@@ -220,8 +220,9 @@ static bool keep_shadow_map(struct gpu_scene *gpu_scene, const struct light_buil
     uint32_t layers = builder->layers;
     if (!gpu_scene->shadow_map)
         gpu_scene->shadow_map = shadow_map_create(gpu_scene->gpu, SHADOW_MAP_EDGE);
-    if (!gpu_scene->shadow_map || !shadow_map_reserve_lights(gpu_scene->shadow_map, layers))
+    if (!gpu_scene->shadow_map)
         return false;
+    shadow_map_reserve_lights(gpu_scene->shadow_map, layers);
     for (uint32_t i = 0; i < layers; i++)
         if (memcmp(&gpu_scene->shadow_views[i], &builder->views[i], sizeof(builder->views[i])) != 0)
             gpu_scene->shadow_stale[i] = true;

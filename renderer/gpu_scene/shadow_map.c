@@ -45,43 +45,49 @@ void shadow_map_destroy(struct shadow_map **map)
     *map = NULL;
 }
 
-static bool resize(struct shadow_map *map, uint32_t lights, uint32_t cascades)
+static void resize(struct shadow_map *map, uint32_t lights, uint32_t cascades)
 {
     destroy_texture(map);
     map->lights = lights;
     map->cascades = cascades;
     map->epoch++;
+}
+
+bool shadow_map_allocate(struct shadow_map *map)
+{
+    uint32_t lights = map->lights, layers = map->lights + map->cascades;
+    if (map->texture || layers == 0)
+        return true;
     map->texture = gpu_texture_create(map->gpu, &(struct gpu_texture_params){
                                                     .label = "shadow_maps",
                                                     .format = GPU_FORMAT_DEPTH32F,
                                                     .width = map->edge,
                                                     .height = map->edge,
-                                                    .layers = lights + cascades,
+                                                    .layers = layers,
                                                     .filter = GPU_FILTER_SHADOW_COMPARE,
                                                 });
     bool done = map->texture != NULL;
-    for (uint32_t i = 0; i < lights + cascades && done; i++) {
+    for (uint32_t i = 0; i < layers && done; i++) {
         uint32_t slot = i < lights ? i : MAX_SHADOW_LAYERS + i - lights;
         map->framebuffers[slot] =
             gpu_framebuffer_create(map->gpu, "shadow_map", NULL, map->texture, i);
         done = map->framebuffers[slot] != NULL;
     }
+    if (!done)
+        destroy_texture(map);
     return done;
 }
 
-bool shadow_map_reserve_lights(struct shadow_map *map, uint32_t layers)
+void shadow_map_reserve_lights(struct shadow_map *map, uint32_t layers)
 {
     assert(layers <= MAX_SHADOW_LAYERS);
     bool cascades = false;
     for (uint32_t i = 0; i < MAX_VIEW_CASCADES; i++)
         cascades = cascades || map->cascade_taken[i];
-    if (layers == 0 && !cascades && map->texture) {
-        destroy_texture(map);
-        map->lights = 0;
-        map->cascades = 0;
-        map->epoch++;
-    }
-    return layers <= map->lights || resize(map, layers, map->cascades);
+    if (layers == 0 && !cascades && map->lights + map->cascades > 0)
+        resize(map, 0, 0);
+    if (layers > map->lights)
+        resize(map, layers, map->cascades);
 }
 
 uint32_t shadow_map_take_cascade(struct shadow_map *map)
@@ -89,8 +95,8 @@ uint32_t shadow_map_take_cascade(struct shadow_map *map)
     for (uint32_t i = 0; i < MAX_VIEW_CASCADES; i++) {
         if (map->cascade_taken[i])
             continue;
-        if (i >= map->cascades && !resize(map, map->lights, i + 1))
-            return UINT32_MAX;
+        if (i >= map->cascades)
+            resize(map, map->lights, i + 1);
         map->cascade_taken[i] = true;
         return i;
     }
