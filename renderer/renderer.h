@@ -35,6 +35,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "renderer/cache/scene_cache.h"
 #include "renderer/error.h"
 #include "renderer/finite_report.h"
 #include "renderer/frame/frame_params.h"

@@ -52,11 +52,15 @@ static const struct option_row rows[] = {
     NUMBER("queue-bytes", queue_bytes, "67108864", 1u << 20, 1u << 30,
            "replies that may wait for one client; beyond, it is hung up on"),
     NUMBER("message-rate", message_rate, "240", 1, 100000, "messages a second of one client"),
+    NUMBER("scene-cache-mib", scene_cache_mib, "2048", 0, SCENE_CACHE_MAX_MIB,
+           "limit of what is kept on disk to open scenes faster; 0: nothing"),
     NUMBER("jpeg-quality", jpeg_quality, "85", 1, 100, "quality of the frames"),
     NUMBER("jpeg-threads", jpeg_threads, "2", 1, ENCODE_MAX_WORKERS, "threads that encode frames"),
     {"log-level", OPTION_LOG_LEVEL, offsetof(struct options, log_level), "info", 0, 0, "LEVEL",
      "error, warn, info or debug"},
 };
+
+_Static_assert(SCENE_CACHE_DEFAULT_MIB == 2048, "the table says so in words");
 
 #define ROW_COUNT (sizeof(rows) / sizeof(rows[0]))
 

@@ -28,6 +28,7 @@ struct options {
     uint32_t message_rate; // a second, for each client
     uint32_t jpeg_quality;
     uint32_t jpeg_threads;
+    uint32_t scene_cache_mib; // 0: no cache
     enum log_level log_level;
 };
 

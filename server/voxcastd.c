@@ -238,6 +238,8 @@ int main(int argument_count, char **arguments)
     pthread_sigmask(SIG_BLOCK, &signals, NULL);
     signal(SIGPIPE, SIG_IGN);
     log_set_level(daemon.options.log_level);
+    if (result == OPTIONS_RUN)
+        scene_cache_open(daemon.options.scene_cache_mib);
     choose_web_dir(&daemon.options);
     bool fine = result == OPTIONS_RUN && check_scene_dir(daemon.options.scene_dir, &error) &&
                 read_token(daemon.options.token_file, daemon.token, &error) &&

@@ -133,6 +133,19 @@ void gpu_texture_fetch(const struct gpu_texture *texture, void *out_pixels, size
                       formats[texture->params.format].type, (GLsizei)size_bytes, out_pixels);
 }
 
+void gpu_texture_read_layer(const struct gpu_texture *texture, uint32_t level, uint32_t layer,
+                            void *out_pixels)
+{
+    const struct gpu_texture_params *params = &texture->params;
+    GLsizei width = (GLsizei)(params->width >> level), height = (GLsizei)(params->height >> level);
+    width = width ? width : 1;
+    height = height ? height : 1;
+    uint32_t bytes = formats[params->format].bytes;
+    glGetTextureSubImage(texture->name, (GLint)level, 0, 0, (GLint)layer, width, height, 1,
+                         formats[params->format].format, formats[params->format].type,
+                         width * height * (GLsizei)bytes, out_pixels);
+}
+
 void gpu_bind_image(struct gpu *gpu, uint32_t slot, const struct gpu_texture *texture)
 {
     (void)gpu;

@@ -1,16 +1,9 @@
 // Images in texture arrays: one array per power-of-two edge and colour space.
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define STB_IMAGE_RESIZE_IMPLEMENTATION
-#define STB_IMAGE_RESIZE_STATIC
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb_image_resize.h>
-#pragma GCC diagnostic pop
-
 #include "renderer/gpu_scene/gpu_scene.h"
+#include "renderer/gpu_scene/texture_layers.h"
 #include "renderer/image/image.h"
 #include "renderer/scene/scene.h"
 
@@ -70,47 +63,6 @@ static uint32_t choose_classes(uint32_t counts[MAX_CLASS_EDGE_LOG2 + 1], bool so
     return class_count;
 }
 
-static float linear_from_srgb(float value)
-{
-    return value <= 0.04045f ? value / 12.92f : powf((value + 0.055f) / 1.055f, 2.4f);
-}
-
-static void compute_mean(const struct image *image, bool color, float out_mean[4])
-{
-    uint64_t count = (uint64_t)image->width * image->height;
-    uint64_t step = count > 4096 ? count / 4096 : 1; // an estimate is enough
-    double sum[4] = {0};
-    uint64_t taken = 0;
-    for (uint64_t i = 0; i < count; i += step, taken++)
-        for (int c = 0; c < 4; c++) {
-            float value = image->rgba[i * 4 + c] / 255.0f;
-            sum[c] += color && c < 3 ? linear_from_srgb(value) : value;
-        }
-    for (int c = 0; c < 4; c++)
-        out_mean[c] = taken ? (float)(sum[c] / (double)taken) : 1.0f;
-}
-
-// Writes an image to a layer, scaled to the class's edge.
-static bool write_layer(struct gpu_texture *texture, uint32_t layer, const struct image *image,
-                        bool color)
-{
-    uint32_t edge = gpu_texture_edge(texture);
-    if (image->width == edge && image->height == edge) {
-        gpu_texture_write(texture, 0, layer, image->rgba);
-        return true;
-    }
-    uint8_t *scaled = malloc((size_t)edge * edge * 4);
-    if (!scaled)
-        return false;
-    stbir_resize_uint8_generic(image->rgba, (int)image->width, (int)image->height, 0, scaled,
-                               (int)edge, (int)edge, 0, 4, 3, STBIR_FLAG_ALPHA_PREMULTIPLIED,
-                               STBIR_EDGE_WRAP, STBIR_FILTER_DEFAULT,
-                               color ? STBIR_COLORSPACE_SRGB : STBIR_COLORSPACE_LINEAR, NULL);
-    gpu_texture_write(texture, 0, layer, scaled);
-    free(scaled);
-    return true;
-}
-
 // Marks the images that the space's textures use, and counts them by edge.
 static void find_uses(const struct gpu_scene *gpu_scene, int space_number,
                       uint32_t out_counts[MAX_CLASS_EDGE_LOG2 + 1])
@@ -154,6 +106,63 @@ static bool create_arrays(struct gpu_scene *gpu_scene, struct texture_space *spa
     return true;
 }
 
+// Which layer of which array holds an image.
+static struct texture_layer layer_of(const struct gpu_scene *gpu_scene, int space_number,
+                                     uint32_t image)
+{
+    const struct texture_space *space = &gpu_scene->texture_spaces[space_number];
+    const struct image_slot *slot = &space->image_slots[image];
+    return (struct texture_layer){.gpu = gpu_scene->gpu,
+                                  .texture = space->classes[slot->class_number],
+                                  .layer = slot->layer,
+                                  .image = gpu_scene->scene->images[image],
+                                  .color = space_number == TEXTURE_SPACE_COLOR};
+}
+
+// Fills all layers. Levels are generated for whole arrays, where any layer lacks them: the others'
+// stay the same. What was made is kept for the next time.
+static bool fill_layers(struct gpu_scene *gpu_scene, int space_number, bool made[])
+{
+    struct texture_space *space = &gpu_scene->texture_spaces[space_number];
+    uint32_t count = gpu_scene->scene->image_count;
+    bool incomplete[MAX_CLASSES_PER_SPACE] = {false};
+    for (uint32_t i = 0; i < count; i++) {
+        struct image_slot *slot = &space->image_slots[i];
+        if (!slot->used)
+            continue;
+        bool whole;
+        struct texture_layer layer = layer_of(gpu_scene, space_number, i);
+        if (!texture_layer_load(&layer, slot->mean, &whole))
+            return false;
+        made[i] = !whole;
+        incomplete[slot->class_number] = incomplete[slot->class_number] || !whole;
+    }
+    for (uint32_t i = 0; i < space->class_count; i++)
+        if (incomplete[i])
+            gpu_texture_generate_levels(space->classes[i]);
+    for (uint32_t i = 0; i < count && scene_cache_is_open(); i++) {
+        if (!made[i])
+            continue;
+        struct texture_layer layer = layer_of(gpu_scene, space_number, i);
+        texture_layer_keep(&layer, space->image_slots[i].mean);
+    }
+    return true;
+}
+
+static void assign_layers(struct gpu_scene *gpu_scene, struct texture_space *space,
+                         const uint32_t class_of[])
+{
+    const struct scene *scene = gpu_scene->scene;
+    uint32_t next_layer[MAX_CLASSES_PER_SPACE] = {0};
+    for (uint32_t i = 0; i < scene->image_count; i++) {
+        struct image_slot *slot = &space->image_slots[i];
+        if (!slot->used)
+            continue;
+        slot->class_number = class_of[edge_log2_of(gpu_scene, scene->images[i])];
+        slot->layer = next_layer[slot->class_number]++;
+    }
+}
+
 static bool upload_space(struct gpu_scene *gpu_scene, int space_number)
 {
     const struct scene *scene = gpu_scene->scene;
@@ -173,21 +182,11 @@ static bool upload_space(struct gpu_scene *gpu_scene, int space_number)
         choose_classes(counts, gpu_get_info(gpu_scene->gpu)->software, classes, class_of);
     if (!create_arrays(gpu_scene, space, color, classes))
         return false;
-    uint32_t next_layer[MAX_CLASSES_PER_SPACE] = {0};
-    for (uint32_t i = 0; i < scene->image_count; i++) {
-        struct image_slot *image_entry = &space->image_slots[i];
-        if (!image_entry->used)
-            continue;
-        image_entry->class_number = class_of[edge_log2_of(gpu_scene, scene->images[i])];
-        image_entry->layer = next_layer[image_entry->class_number]++;
-        compute_mean(scene->images[i], color, image_entry->mean);
-        if (!write_layer(space->classes[image_entry->class_number], image_entry->layer,
-                         scene->images[i], color))
-            return false;
-    }
-    for (uint32_t i = 0; i < space->class_count; i++)
-        gpu_texture_generate_levels(space->classes[i]);
-    return true;
+    assign_layers(gpu_scene, space, class_of);
+    bool *made = calloc(scene->image_count ? scene->image_count : 1, sizeof(*made));
+    bool done = made && fill_layers(gpu_scene, space_number, made);
+    free(made);
+    return done;
 }
 
 bool gpu_scene_upload_textures(struct gpu_scene *gpu_scene)

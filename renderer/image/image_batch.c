@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "renderer/image/image_decode.h"
@@ -27,6 +28,52 @@ static bool reserve_bytes(struct image_batch *batch, uint32_t width, uint32_t he
     return true;
 }
 
+// Raise it when a decoder accepts other files than before.
+#define DECODER_VERSION 1
+
+// Key of the note that these bytes can be decoded: its content is the image's size.
+static struct cache_key note_key(const uint8_t *bytes, size_t size)
+{
+    struct cache_key key = cache_key_start("decodable image", DECODER_VERSION);
+    cache_key_add(&key, bytes, size);
+    return key;
+}
+
+// An image that an earlier run has decoded; its pixels are decoded if anybody asks for them.
+static struct image *find_known(const struct cache_key *key, const uint8_t *bytes, size_t size,
+                                uint32_t width, uint32_t height)
+{
+    const uint32_t here[2] = {width, height};
+    size_t note_size;
+    void *note = scene_cache_read(key, sizeof(here), &note_size);
+    bool known = note && note_size == sizeof(here) && memcmp(note, here, sizeof(here)) == 0;
+    free(note);
+    return known ? image_create_undecoded(width, height, bytes, size) : NULL;
+}
+
+static struct image *decode(const uint8_t *bytes, size_t size, uint32_t width, uint32_t height,
+                            struct error *out_error)
+{
+    bool cached = scene_cache_is_open();
+    struct cache_key key = {0};
+    if (cached) {
+        key = note_key(bytes, size);
+        struct image *known = find_known(&key, bytes, size, width, height);
+        if (known) {
+            return known;
+        }
+    }
+    struct image *image = image_decode(bytes, size, out_error);
+    if (image) {
+        image_keep_file(image, bytes, size);
+    }
+    if (image && cached) {
+        const uint32_t here[2] = {width, height};
+        scene_cache_write(&key, here, sizeof(here));
+    }
+    return image;
+}
+
 static void decode_request(struct image_batch *batch, struct image_request *request,
                            const uint8_t *bytes, size_t size)
 {
@@ -35,7 +82,7 @@ static void decode_request(struct image_batch *batch, struct image_request *requ
         !reserve_bytes(batch, width, height, &request->error)) {
         return;
     }
-    request->image = image_decode(bytes, size, &request->error);
+    request->image = decode(bytes, size, width, height, &request->error);
     if (request->image && request->key.path) {
         asset_cache_put(&request->key, request->image);
     }

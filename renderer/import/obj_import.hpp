@@ -41,17 +41,16 @@ void obj_import_materials(obj_import &import, const std::vector<std::string> &li
 // one reference; NULL when out of memory.
 
 // The base colour with the mask as alpha, in the larger of both sizes. `color` may be NULL: white.
-struct image *obj_merge_mask(const struct image *color, const struct image *mask);
+struct image *obj_merge_mask(struct image *color, struct image *mask);
 
 // Roughness in G and metallic in B, as in glTF; either may be NULL: 1.
-struct image *obj_merge_metallic_roughness(const struct image *metallic,
-                                           const struct image *roughness);
+struct image *obj_merge_metallic_roughness(struct image *metallic, struct image *roughness);
 
 // A tangent-space normal map of heights 0..1 times `multiplier`.
-struct image *obj_make_normal_map(const struct image *heights, float multiplier);
+struct image *obj_make_normal_map(struct image *heights, float multiplier);
 
 // Whether an image given as a height map is in fact a normal map: bluish throughout.
-bool obj_is_normal_map(const struct image *image);
+bool obj_is_normal_map(struct image *image);
 
 // obj_polygon.cpp
 

@@ -7,6 +7,28 @@
 // Depth of height 1, in texel widths; MTL leaves the scale open.
 #define OBJ_BUMP_DEPTH_TEXELS 4.0f
 
+// Pins an image, or none, while it lives.
+class image_pins
+{
+  public:
+    explicit image_pins(struct image *image) : pinned(image && image_pin(image) ? image : nullptr)
+    {
+        fine = pinned == image;
+    }
+    ~image_pins()
+    {
+        if (pinned) {
+            image_unpin(pinned);
+        }
+    }
+    image_pins(const image_pins &) = delete;
+    image_pins &operator=(const image_pins &) = delete;
+    bool fine;
+
+  private:
+    struct image *pinned;
+};
+
 static struct image *new_image(uint32_t width, uint32_t height)
 {
     uint8_t *rgba = (uint8_t *)malloc((size_t)width * height * 4);
@@ -26,8 +48,12 @@ static const uint8_t *scaled_texel(const struct image *image, uint32_t x, uint32
     return image->rgba + (row * image->width + column) * 4;
 }
 
-struct image *obj_merge_mask(const struct image *color, const struct image *mask)
+struct image *obj_merge_mask(struct image *color, struct image *mask)
 {
+    image_pins color_pins(color), mask_pins(mask);
+    if (!color_pins.fine || !mask_pins.fine) {
+        return nullptr;
+    }
     uint32_t width = std::max(color ? color->width : 1, mask->width);
     uint32_t height = std::max(color ? color->height : 1, mask->height);
     struct image *merged = new_image(width, height);
@@ -46,9 +72,12 @@ struct image *obj_merge_mask(const struct image *color, const struct image *mask
     return merged;
 }
 
-struct image *obj_merge_metallic_roughness(const struct image *metallic,
-                                           const struct image *roughness)
+struct image *obj_merge_metallic_roughness(struct image *metallic, struct image *roughness)
 {
+    image_pins metallic_pins(metallic), roughness_pins(roughness);
+    if (!metallic_pins.fine || !roughness_pins.fine) {
+        return nullptr;
+    }
     uint32_t width = std::max(metallic ? metallic->width : 1, roughness ? roughness->width : 1);
     uint32_t height = std::max(metallic ? metallic->height : 1, roughness ? roughness->height : 1);
     struct image *merged = new_image(width, height);
@@ -71,8 +100,12 @@ static float height_at(const struct image *heights, uint32_t x, uint32_t y)
     return (float)(texel[0] + texel[1] + texel[2]) / (3 * 255.0f);
 }
 
-struct image *obj_make_normal_map(const struct image *heights, float multiplier)
+struct image *obj_make_normal_map(struct image *heights, float multiplier)
 {
+    image_pins pins(heights);
+    if (!pins.fine) {
+        return nullptr;
+    }
     uint32_t width = heights->width;
     uint32_t height = heights->height;
     struct image *made = new_image(width, height);
@@ -94,8 +127,12 @@ struct image *obj_make_normal_map(const struct image *heights, float multiplier)
     return made;
 }
 
-bool obj_is_normal_map(const struct image *image)
+bool obj_is_normal_map(struct image *image)
 {
+    image_pins pins(image);
+    if (!pins.fine) {
+        return false;
+    }
     uint64_t sums[3] = {};
     size_t count = (size_t)image->width * image->height;
     for (size_t i = 0; i < count; i++) {

@@ -151,7 +151,9 @@ bool snapshot_build(struct snapshot *snapshot, bool in_background, struct error 
 {
     assert(!snapshot->rays);
     move_to_origin(snapshot);
-    if (fill_tables(snapshot, in_background)) {
+    // Textures are looked up in images from now on.
+    if (pinned_images_take(&snapshot->images, snapshot->scene, false) &&
+        fill_tables(snapshot, in_background)) {
         snapshot->lights = lights_create(snapshot);
         snapshot->environment = environment_create(&snapshot->scene->environment);
     }
@@ -183,6 +185,7 @@ void snapshot_release(struct snapshot **snapshot_slot)
     ray_scene_destroy(&snapshot->rays);
     lights_destroy(&snapshot->lights);
     environment_destroy(&snapshot->environment);
+    pinned_images_release(&snapshot->images);
     if (snapshot->scene)
         scene_destroy(&snapshot->scene);
     free(snapshot->instances);

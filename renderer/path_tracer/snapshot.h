@@ -10,6 +10,7 @@
 
 #include "renderer/path_tracer/reference.h"
 #include "renderer/path_tracer/texture.h"
+#include "renderer/scene/pinned_images.h"
 #include "renderer/scene/ray_scene.h"
 
 // A node's transform.
@@ -58,6 +59,7 @@ struct snapshot {
     double origin[3];
     float diagonal_m;
     bool has_bodies; // some material refracts
+    struct pinned_images images;
 };
 
 static inline float3 instance_point(const struct instance *instance, float3 local)

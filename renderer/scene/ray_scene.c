@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/scene/pinned_images.h"
 #include "renderer/scene/texture_sample.h"
 #include "renderer/scene/vector3.h"
 
@@ -41,6 +42,7 @@ struct ray_scene {
     float *instance_extents;       // largest coordinate of the instance's mesh
     uint32_t instance_count;
     uint32_t packet_width; // rays per vector register
+    struct pinned_images masks;
 };
 
 static float alpha_at(const struct scene *scene, uint32_t primitive, uint32_t triangle, float u,
@@ -258,7 +260,8 @@ struct ray_scene *ray_scene_create_for_light(const struct ray_scene_params *para
     ray_scene->instance_extents = calloc(scene->node_count + 1, sizeof(float));
     if (!ray_scene->device || !ray_scene->meshes || !ray_scene->filters ||
         !ray_scene->instance_nodes || !ray_scene->instance_primitives ||
-        !ray_scene->instance_extents || !ray_scene->lets_light_pass) {
+        !ray_scene->instance_extents || !ray_scene->lets_light_pass ||
+        !pinned_images_take(&ray_scene->masks, scene, true)) {
         ray_scene_destroy(&ray_scene);
         return NULL;
     }
@@ -291,6 +294,7 @@ void ray_scene_destroy(struct ray_scene **ray_scene_slot)
     }
     if (ray_scene->device)
         rtcReleaseDevice(ray_scene->device);
+    pinned_images_release(&ray_scene->masks);
     free(ray_scene->meshes);
     free(ray_scene->filters);
     free(ray_scene->lets_light_pass);
@@ -349,6 +353,7 @@ void ray_scene_update_materials(struct ray_scene *ray_scene)
 {
     const struct scene *scene = ray_scene->scene;
     bool any_rebuilt = false;
+    pinned_images_take(&ray_scene->masks, scene, true);
     for (uint32_t mesh = 0; mesh < ray_scene->mesh_count; mesh++) {
         const struct scene_mesh *source = &scene->meshes[mesh];
         bool rebuild = false;

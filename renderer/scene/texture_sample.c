@@ -40,11 +40,11 @@ void texture_sample(const struct scene *scene, const struct scene_texture *textu
 {
     double at[2];
     transform_uv(texture, uv, at);
-    if (texture->image == SCENE_NONE || !isfinite(at[0]) || !isfinite(at[1])) {
+    const struct image *image = texture->image == SCENE_NONE ? NULL : scene->images[texture->image];
+    if (!image || !image->rgba || !isfinite(at[0]) || !isfinite(at[1])) {
         out_rgba[0] = out_rgba[1] = out_rgba[2] = out_rgba[3] = 1.0f;
         return;
     }
-    const struct image *image = scene->images[texture->image];
     double center = texture->nearest ? 0.0 : 0.5;
     double x = fmax(-1e15, fmin(1e15, at[0] * image->width - center));
     double y = fmax(-1e15, fmin(1e15, at[1] * image->height - center));

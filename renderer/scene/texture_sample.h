@@ -5,7 +5,8 @@
 #include "renderer/scene/scene.h"
 
 // Bilinear sample (or nearest, if the texture says so) at the vertices' `uv`, with the texture's
-// transform and wrap modes: four values 0..1 as stored, sRGB not decoded. White without an image.
+// transform and wrap modes: four values 0..1 as stored, sRGB not decoded. White without an
+// image, and where nobody has pinned it.
 // Any thread, as long as nobody edits the scene.
 void texture_sample(const struct scene *scene, const struct scene_texture *texture,
                     const float uv[2], float out_rgba[4]);

@@ -220,7 +220,7 @@ cJSON *document_json_scene(const struct document *document)
 
 cJSON *document_json_texture(const struct scene *scene, uint32_t image_id)
 {
-    const struct image *image = scene->images[image_id];
+    struct image *image = scene->images[image_id];
     struct thumbnail thumbnail;
     if (!thumbnail_create(image, &thumbnail))
         return NULL;

@@ -69,7 +69,7 @@ static void average(const struct image *image, uint32_t width, uint32_t height, 
         out_rgb[c] = (uint8_t)(sums[c] / (TAPS_PER_AXIS * TAPS_PER_AXIS));
 }
 
-bool thumbnail_create(const struct image *image, struct thumbnail *out_thumbnail)
+bool thumbnail_create(struct image *image, struct thumbnail *out_thumbnail)
 {
     uint32_t longer = image->width > image->height ? image->width : image->height;
     uint32_t edge = longer < PROTOCOL_MAX_THUMBNAIL_EDGE ? longer : PROTOCOL_MAX_THUMBNAIL_EDGE;
@@ -80,10 +80,15 @@ bool thumbnail_create(const struct image *image, struct thumbnail *out_thumbnail
     uint8_t *rgb = malloc((size_t)width * height * 3);
     if (!rgb)
         return false;
+    if (!image_pin(image)) {
+        free(rgb);
+        return false;
+    }
     for (uint32_t y = 0; y < height; y++) {
         for (uint32_t x = 0; x < width; x++)
             average(image, width, height, x, y, rgb + ((size_t)y * width + x) * 3);
     }
+    image_unpin(image);
     uint32_t bytes = 0;
     uint8_t *jpeg = encode_jpeg(rgb, width, height, THUMBNAIL_QUALITY, &bytes);
     char *base64 = jpeg ? base64_encode(jpeg, bytes) : NULL;

@@ -16,7 +16,7 @@ struct thumbnail {
 
 // Averages up to 8 x 8 texels for each pixel, so that the cost is bounded for any image. False when
 // out of memory.
-bool thumbnail_create(const struct image *image, struct thumbnail *out_thumbnail);
+bool thumbnail_create(struct image *image, struct thumbnail *out_thumbnail);
 void thumbnail_finish(struct thumbnail *thumbnail);
 
 // RFC 4648 text from malloc, owned by the caller; NULL when out of memory.

@@ -36,6 +36,8 @@ static const char usage[] =
     "  --converge-first     with --frames: let the first image converge before measuring\n"
     "  --stats FILE         write statistics as JSON\n"
     "  --gpu WHICH          auto, software or a device index (default auto)\n"
+    "  --scene-cache-mib N  limit of what is kept on disk to open scenes faster (default 2048); 0\n"
+    "                       keeps and uses nothing\n"
     "\n"
     "With --gi reference, the reference image by a path tracer on the CPU:\n"
     "  --spp N              samples per pixel (default 64, or as many as time and noise allow)\n"
@@ -191,6 +193,12 @@ static int write_statistics(const struct render_job *job)
         measurement_json(&job->measurement, &statistics, renderer_get_info(job->renderer),
                          job->scene, job->params->width, job->params->height);
     cJSON_AddNumberToObject(json, "convergence", (double)job->convergence);
+    const struct scene_cache_statistics cache = scene_cache_get_statistics();
+    struct cJSON *object = cJSON_AddObjectToObject(json, "scene_cache");
+    cJSON_AddNumberToObject(object, "hits", (double)cache.hits);
+    cJSON_AddNumberToObject(object, "misses", (double)cache.misses);
+    cJSON_AddNumberToObject(object, "invalid", (double)cache.invalid);
+    cJSON_AddNumberToObject(object, "written_bytes", (double)cache.written_bytes);
     if (job->options->frames == 0)
         cJSON_AddBoolToObject(json, "converged", job->converged);
     bool done = cli_write_json(job->options->stats, json, &error);

@@ -12,6 +12,8 @@ void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target)
     cli_take_text(parser, "environment", &target->environment);
     cli_take_camera(parser, &target->camera);
     cli_take_settings(parser, &target->settings);
+    target->scene_cache_mib = SCENE_CACHE_DEFAULT_MIB;
+    cli_take_count(parser, "scene-cache-mib", 0, SCENE_CACHE_MAX_MIB, &target->scene_cache_mib);
 }
 
 static bool apply_options(const struct cli_shot_options *options, enum quality preset,
@@ -42,6 +44,7 @@ int cli_shot_load(const struct cli_shot_options *options, enum quality preset,
                   struct shot *out_shot)
 {
     struct error error = {""};
+    scene_cache_open(options->scene_cache_mib);
     struct shot shot = {
         .scene = scene_load_in_environment(options->source, options->environment, &error)};
     if (!shot.scene)

@@ -12,15 +12,16 @@ struct cli_shot_options {
     struct cli_size size;
     struct cli_camera camera;
     struct cli_settings settings;
+    uint32_t scene_cache_mib; // 0: no cache
 };
 
-// Declares --size, --gpu, --environment and the options of camera and settings; initializes all but
-// the size.
+// Declares --size, --gpu, --environment, --scene-cache-mib and the options of camera and settings;
+// initializes all but the size.
 void cli_take_shot(struct cli_parser *parser, struct cli_shot_options *target);
 
-// Loads the scene, prints its warnings and applies the options; starts no renderer. `preset` is the
-// quality if none is asked for. Returns the exit status: 0, or that of a message on stderr; then
-// nothing needs closing.
+// Opens the scene cache, loads the scene, prints its warnings and applies the options; starts no
+// renderer. `preset` is the quality if none is asked for. Returns the exit status: 0, or that of a
+// message on stderr; then nothing needs closing.
 int cli_shot_load(const struct cli_shot_options *options, enum quality preset,
                   struct shot *out_shot);
 

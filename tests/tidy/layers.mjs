@@ -48,7 +48,12 @@ export const LAYERS = [
     may: ['renderer/image', 'protocol/parameters', ...BASE, ...SETTINGS],
     why: 'the document alone: no GPU, no files',
   },
-  { folder: 'renderer/image', may: BASE, why: 'pixels of textures: decoded and cached' },
+  { folder: 'renderer/cache', may: BASE, why: 'bytes on disk; knows no scene' },
+  {
+    folder: 'renderer/image',
+    may: ['renderer/cache', ...BASE],
+    why: 'pixels of textures: decoded and cached',
+  },
   {
     folder: 'renderer/import',
     may: ['renderer/scene', 'renderer/image', ...BASE],
@@ -150,6 +155,7 @@ export const LAYERS = [
       'renderer/gpu',
       'renderer/import',
       'renderer/image',
+      'renderer/cache',
       'renderer/scene',
       'shaders/shared',
       'protocol/parameters',

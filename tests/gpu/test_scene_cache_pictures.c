@@ -1,0 +1,183 @@
+// Proves that the scene cache changes no bit of an image: draws scenes without it, with it empty,
+// with it filled, and with every file in it damaged, by one frame that has not converged and by one
+// thread of the driver, so that frames are repeatable. Scenes have textures made by code and read
+// from files. Also that a filled cache is used, and that damage is noticed.
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "renderer/image/image_cache.h"
+#include "renderer/renderer.h"
+
+#define WIDTH  96u
+#define HEIGHT 54u
+#define FRAMES 3u
+
+static char home[64];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    strcpy(home, "scene_cache.XXXXXX");
+    assert_non_null(mkdtemp(home));
+    char path[4096];
+    assert_non_null(realpath(home, path));
+    return setenv("XDG_CACHE_HOME", path, 1);
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    scene_cache_open(0);
+    char command[128];
+    snprintf(command, sizeof(command), "rm -rf '%s'", home);
+    return system(command);
+}
+
+static void look_at_all(const struct scene *scene, struct view_camera *camera)
+{
+    double low[3], high[3];
+    assert_true(scene_bounds(scene, low, high));
+    for (int axis = 0; axis < 3; axis++) {
+        camera->target[axis] = (float)(0.5 * (low[axis] + high[axis]));
+        camera->eye[axis] = (float)(high[axis] + 0.5 * (high[axis] - low[axis]));
+    }
+    camera->up[1] = 1.0f;
+}
+
+// The linear image after some frames, as a process draws it that has just begun.
+static float *draw(const char *source, const struct render_settings *settings)
+{
+    struct error error = {""};
+    struct renderer *renderer =
+        renderer_create(&(struct renderer_params){.gpu = "software", .trace_budget = 4096}, &error);
+    struct scene *scene = scene_load(source, &error);
+    if (!renderer || !scene || !renderer_set_scene(renderer, scene, &error))
+        fail_msg("%s", error.message);
+    struct view *view = renderer_view_create(renderer);
+    struct frame_params params = {.width = WIDTH,
+                                  .height = HEIGHT,
+                                  .quality = QUALITY_INTERACTIVE,
+                                  .settings = *settings,
+                                  .output = FRAME_OUTPUT_LINEAR};
+    params.camera.fov_y_rad = 0.9f;
+    if (scene->camera_count > 0)
+        scene_get_camera_placement(scene, 0, params.camera.eye, params.camera.target,
+                                   params.camera.up);
+    else
+        look_at_all(scene, &params.camera);
+    float *pixels = malloc((size_t)WIDTH * HEIGHT * 16);
+    assert_non_null(pixels);
+    for (uint32_t i = 0; i < FRAMES; i++) {
+        struct frame_pixels frame;
+        if (renderer_view_draw(renderer, view, &params, &error) != RENDER_DRAWN)
+            fail_msg("%s", error.message);
+        assert_true(renderer_view_collect(renderer, view, true, &frame));
+        memcpy(pixels, frame.planes[0], (size_t)WIDTH * HEIGHT * 16);
+        renderer_view_release(renderer, view);
+    }
+    assert_int_equal(renderer_gl_error_count(renderer), 0);
+    renderer_view_destroy(renderer, &view);
+    renderer_set_scene(renderer, NULL, NULL);
+    scene_destroy(&scene);
+    renderer_destroy(&renderer);
+    return pixels;
+}
+
+// Flips a bit in the middle of every entry.
+static uint32_t damage_all(void)
+{
+    char folder[128], path[512];
+    snprintf(folder, sizeof(folder), "%s/voxcast/scenes", home);
+    DIR *stream = opendir(folder);
+    assert_non_null(stream);
+    uint32_t count = 0;
+    for (struct dirent *it; (it = readdir(stream));) {
+        if (it->d_name[0] == '.')
+            continue;
+        snprintf(path, sizeof(path), "%s/%s", folder, it->d_name);
+        FILE *file = fopen(path, "r+b");
+        assert_non_null(file);
+        fseek(file, 0, SEEK_END);
+        long middle = ftell(file) / 2;
+        fseek(file, middle, SEEK_SET);
+        int byte = fgetc(file);
+        fseek(file, middle, SEEK_SET);
+        fputc(byte ^ 1, file);
+        fclose(file);
+        count++;
+    }
+    closedir(stream);
+    return count;
+}
+
+static void check_scene(const char *source, const struct render_settings *settings)
+{
+    struct scene_cache_statistics before, after;
+    scene_cache_open(0);
+    float *without = draw(source, settings);
+    scene_cache_open(512);
+    for (int round = 0; round < 3; round++) {
+        uint32_t damaged = round == 2 ? damage_all() : 0;
+        before = scene_cache_get_statistics();
+        float *with = draw(source, settings);
+        after = scene_cache_get_statistics();
+        print_message("%s: %llu found, %llu not, %llu of them damaged\n", source,
+                      (unsigned long long)(after.hits - before.hits),
+                      (unsigned long long)(after.misses - before.misses),
+                      (unsigned long long)(after.invalid - before.invalid));
+        assert_memory_equal(with, without, (size_t)WIDTH * HEIGHT * 16);
+        free(with);
+        if (round == 1) {
+            assert_int_equal(after.misses, before.misses);
+            assert_true(after.hits > before.hits);
+        }
+        if (round == 2)
+            assert_int_equal(after.invalid - before.invalid, damaged);
+    }
+    free(without);
+}
+
+static void test_scene_made_by_code(void **state)
+{
+    (void)state;
+    struct render_settings settings;
+    render_settings_init(&settings);
+    check_scene("builtin:atrium", &settings);
+}
+
+static void test_scene_from_a_file(void **state)
+{
+    (void)state;
+    const char *scenes = getenv("VOXCAST_SCENES");
+    char path[4096];
+    snprintf(path, sizeof(path), "%s/sponza/sponza.glb", scenes ? scenes : "");
+    if (access(path, R_OK) != 0) {
+        print_message("not tested: %s is not there\n", path);
+        skip();
+    }
+    struct render_settings settings;
+    render_settings_init(&settings);
+    check_scene(path, &settings);
+}
+
+int main(void)
+{
+    // Repeatable frames; read when the driver starts.
+    setenv("LP_NUM_THREADS", "1", 1);
+    asset_cache_set_budget(0); // no image is remembered from one drawing to the next
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+    const struct CMUnitTest tests[] = {
+        TEST(test_scene_made_by_code),
+        TEST(test_scene_from_a_file),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
