@@ -8,6 +8,7 @@
 
 #include "renderer/gpu/internal.h"
 #include "renderer/gpu/shader_source.h"
+#include "renderer/hash.h"
 #include "renderer/log.h"
 
 // Beyond, the one that has not been asked for longest makes room. A frame uses about 40.
@@ -20,6 +21,7 @@ struct gpu_program {
     GLuint name;
     char path[SHADER_MAX_PATH];
     char defines[MAX_DEFINES];
+    uint64_t source_hash; // of all stages
     bool stale;
     uint64_t used; // the library's clock when it was last asked for
     struct gpu_program_bindings bindings;
@@ -94,6 +96,7 @@ static GLuint build_stage(struct gpu *gpu, struct gpu_program *program, GLenum s
     if (!read)
         return 0;
     GLuint shader = compile_stage(stage, &source, path, out_error);
+    program->source_hash = hash_bytes(program->source_hash, source.text, strlen(source.text));
     shader_source_finish(&source);
     return shader;
 }
@@ -160,6 +163,7 @@ bool gpu_set_shader_defines(struct gpu *gpu, const char *defines)
 static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *out_error)
 {
     program->file_count = 0;
+    program->source_hash = HASH_START;
     if (gpu_fault_strikes(gpu, RENDERER_FAULT_PROGRAM)) {
         error_set(out_error, "shader \"%s\" does not compile: it was told not to", program->path);
         return 0;
@@ -356,6 +360,11 @@ bool gpu_program_find_member(const struct gpu_program *program, const char *name
         return offset >= 0;
     }
     return false;
+}
+
+uint64_t gpu_program_source_hash(const struct gpu_program *program)
+{
+    return program->source_hash;
 }
 
 uint32_t gpu_program_name(const struct gpu_program *program)

@@ -1,5 +1,7 @@
 // Voxelizes the triangles of newly covered regions.
-#include "renderer/gi/voxel/volume.h"
+#include "renderer/gi/voxel/voxel_cache.h"
+#include "renderer/gpu/program.h"
+#include "renderer/hash.h"
 #include "renderer/passes/pass.h"
 
 // Groups along x where one dimension cannot hold all groups of a dispatch.
@@ -63,16 +65,49 @@ static void enter_triangles(const struct frame *frame, const struct gpu_program 
     gpu_barrier(frame->gpu);
 }
 
-static void list_cells(const struct frame *frame, const struct gpu_program *const programs[])
+static void make_cells(const struct frame *frame, const struct gpu_program *const programs[])
+{
+    dispatch_rows(frame, programs[PROGRAM_CELLS],
+                  groups_of(frame->volume->region_voxels, REGION_RUN));
+}
+
+// Before cells are listed.
+static void empty_lists(const struct frame *frame, const struct gpu_program *const programs[])
 {
     struct voxel_volume *volume = frame->volume;
-    dispatch_rows(frame, programs[PROGRAM_CELLS], groups_of(volume->region_voxels, REGION_RUN));
     gpu_dispatch(frame->gpu, programs[PROGRAM_REPAIR], 1, 1, 1);
     gpu_barrier(frame->gpu);
     if (volume->dirty[volume->cell_level_count - 1].count == 0)
         return; // mips of the coarsest level have not changed
     size_t first = volume->list_words - volume->mip_words;
     gpu_buffer_fill(volume->lists, first * 4, volume->mip_words * 4, 0);
+}
+
+static struct cache_key key_of(const struct frame *frame,
+                               const struct gpu_program *const programs[])
+{
+    uint64_t hash = HASH_START;
+    for (uint32_t i = 0; i < PROGRAM_COUNT; i++)
+        hash = hash_word(hash, gpu_program_source_hash(programs[i]));
+    return voxel_cache_key(frame->volume, frame->gpu_scene, hash);
+}
+
+// Fills the regions with what is in them. Returns whether that is worth keeping under *out_key.
+static bool fill_regions(const struct frame *frame, const struct gpu_program *const programs[],
+                         struct cache_key *out_key)
+{
+    bool cached = voxel_cache_applies(frame->volume);
+    empty_regions(frame, programs);
+    if (cached)
+        *out_key = key_of(frame, programs);
+    if (cached && voxel_cache_restore(frame->volume, out_key)) {
+        empty_lists(frame, programs);
+        return false;
+    }
+    enter_triangles(frame, programs);
+    make_cells(frame, programs);
+    empty_lists(frame, programs);
+    return cached;
 }
 
 static bool voxelize_run(struct frame *frame, const struct pass *pass, struct error *out_error)
@@ -82,14 +117,16 @@ static bool voxelize_run(struct frame *frame, const struct pass *pass, struct er
     if (!pass_programs(frame, pass, programs, out_error))
         return false;
     for (int attempt = 0; attempt < MAX_GROWTH; attempt++) {
-        empty_regions(frame, programs);
-        enter_triangles(frame, programs);
-        list_cells(frame, programs);
+        struct cache_key key;
+        bool keep = fill_regions(frame, programs, &key);
         enum voxel_room room = voxel_volume_check_room(volume);
         if (room == VOXEL_ROOM_ENOUGH) {
+            if (keep)
+                voxel_cache_keep(volume, &key);
             dispatch_rows(frame, programs[PROGRAM_LIST], groups_of(volume->cell_count, CELL_RUN));
             gpu_dispatch(frame->gpu, programs[PROGRAM_ARGUMENTS], 1, 1, 1);
             volume->everything = false;
+            volume->voxelized = true;
             return true;
         }
         if (room == VOXEL_ROOM_NONE ||

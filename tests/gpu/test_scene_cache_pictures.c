@@ -1,7 +1,8 @@
 // Proves that the scene cache changes no bit of an image: draws scenes without it, with it empty,
 // with it filled, and with every file in it damaged, by one frame that has not converged and by one
 // thread of the driver, so that frames are repeatable. Scenes have textures made by code and read
-// from files. Also that a filled cache is used, and that damage is noticed.
+// from files. Also that a filled cache is used, that damage is noticed, and that entries forged
+// with a right checksum do not bring the program down.
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -92,8 +93,8 @@ static float *draw(const char *source, const struct render_settings *settings)
     return pixels;
 }
 
-// Flips a bit in the middle of every entry.
-static uint32_t damage_all(void)
+// Calls back for each entry's path.
+static uint32_t for_all_entries(void (*call)(const char *path, uint32_t seed), uint32_t seed)
 {
     char folder[128], path[512];
     snprintf(folder, sizeof(folder), "%s/voxcast/scenes", home);
@@ -104,19 +105,25 @@ static uint32_t damage_all(void)
         if (it->d_name[0] == '.')
             continue;
         snprintf(path, sizeof(path), "%s/%s", folder, it->d_name);
-        FILE *file = fopen(path, "r+b");
-        assert_non_null(file);
-        fseek(file, 0, SEEK_END);
-        long middle = ftell(file) / 2;
-        fseek(file, middle, SEEK_SET);
-        int byte = fgetc(file);
-        fseek(file, middle, SEEK_SET);
-        fputc(byte ^ 1, file);
-        fclose(file);
-        count++;
+        call(path, seed + count++);
     }
     closedir(stream);
     return count;
+}
+
+// Flips a bit in the middle of an entry.
+static void damage(const char *path, uint32_t seed)
+{
+    (void)seed;
+    FILE *file = fopen(path, "r+b");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    long middle = ftell(file) / 2;
+    fseek(file, middle, SEEK_SET);
+    int byte = fgetc(file);
+    fseek(file, middle, SEEK_SET);
+    fputc(byte ^ 1, file);
+    fclose(file);
 }
 
 static void check_scene(const char *source, const struct render_settings *settings)
@@ -126,7 +133,7 @@ static void check_scene(const char *source, const struct render_settings *settin
     float *without = draw(source, settings);
     scene_cache_open(512);
     for (int round = 0; round < 3; round++) {
-        uint32_t damaged = round == 2 ? damage_all() : 0;
+        uint32_t damaged = round == 2 ? for_all_entries(damage, 0) : 0;
         before = scene_cache_get_statistics();
         float *with = draw(source, settings);
         after = scene_cache_get_statistics();
@@ -144,6 +151,56 @@ static void check_scene(const char *source, const struct render_settings *settin
             assert_int_equal(after.invalid - before.invalid, damaged);
     }
     free(without);
+}
+
+static uint8_t *read_whole(const char *path, size_t *out_size)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    *out_size = (size_t)ftell(file);
+    rewind(file);
+    uint8_t *bytes = malloc(*out_size);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *out_size, file), *out_size);
+    fclose(file);
+    return bytes;
+}
+
+// Replaces an entry by one with a right checksum and words changed: by the seed one bit of a word
+// in many, all bits of one in sixteen, or all words. The key follows the magic number.
+static void forge(const char *path, uint32_t seed)
+{
+    size_t size;
+    uint8_t *bytes = read_whole(path, &size);
+    struct cache_key key;
+    memcpy(&key, bytes + 8, sizeof(key));
+    uint32_t *words = (uint32_t *)(bytes + SCENE_CACHE_HEADER_BYTES),
+             state = seed * 2654435761u + 1;
+    for (size_t i = 0; i < (size - SCENE_CACHE_HEADER_BYTES) / 4; i++) {
+        state = state * 1664525u + 1013904223u;
+        if (seed % 3 == 0 && state >> 22 == 0)
+            words[i] ^= 1u << (state & 31);
+        else if (seed % 3 == 1 && state >> 28 == 0 && i >= 4)
+            words[i] = state;
+        else if (seed % 3 == 2)
+            words[i] = 0xffffffffu;
+    }
+    scene_cache_write(&key, bytes + SCENE_CACHE_HEADER_BYTES, size - SCENE_CACHE_HEADER_BYTES);
+    free(bytes);
+}
+
+static void test_forged_entries(void **state)
+{
+    (void)state;
+    struct render_settings settings;
+    render_settings_init(&settings);
+    scene_cache_open(512);
+    free(draw("builtin:cornell-objects", &settings));
+    for (uint32_t seed = 0; seed < 6; seed++) {
+        assert_true(for_all_entries(forge, seed) > 0);
+        free(draw("builtin:cornell-objects", &settings));
+    }
 }
 
 static void test_scene_made_by_code(void **state)
@@ -178,6 +235,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(test_scene_made_by_code),
         TEST(test_scene_from_a_file),
+        TEST(test_forged_entries),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

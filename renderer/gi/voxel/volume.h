@@ -114,6 +114,7 @@ struct voxel_volume {
     bool laid_out;
     bool faces_full; // the pool of face records was too small
     bool everything; // voxelize all
+    bool voxelized;  // since the volume was created
     uint32_t region_count;
     uint32_t region_voxels;
     uint32_t batch_count;
