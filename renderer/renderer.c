@@ -27,6 +27,8 @@ struct renderer {
     struct view *views[RENDERER_MAX_VIEWS]; // the first view_count are valid
     struct ray_scene *ray_scene;
     struct scene_revisions ray_revisions;
+    const struct bvh *trimmed_bvh; // of the frame that memory was trimmed after
+    uint64_t trimmed_programs;
     bool lost;                       // the GL context is lost
     bool (*admit_frame)(void *user); // NULL: always admitted
     void *user;
@@ -134,6 +136,7 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
     gpu_scene_destroy(&renderer->gpu_scene);
     renderer->gpu_scene = gpu_scene;
     renderer->scene = scene;
+    gpu_trim_memory(renderer->gpu);
     return true;
 }
 
@@ -205,6 +208,19 @@ static bool draw_frame(struct renderer *renderer, struct frame *frame, struct er
     view_bind(view);
     gi_bind_frame(frame);
     return passes_execute(frame, out_error);
+}
+
+// Gives back to the system what loading a scene, compiling shaders and building a BVH have left,
+// after the frames that have.
+static void trim_memory(struct renderer *renderer)
+{
+    const struct bvh *bvh = renderer->gpu_scene->bvh;
+    uint64_t programs = gpu_programs_built(renderer->gpu);
+    if (bvh == renderer->trimmed_bvh && programs == renderer->trimmed_programs)
+        return;
+    gpu_trim_memory(renderer->gpu);
+    renderer->trimmed_bvh = bvh;
+    renderer->trimmed_programs = programs;
 }
 
 static bool params_are_valid(const struct frame_params *params, struct error *out_error)
@@ -320,6 +336,7 @@ enum render_result renderer_view_draw(struct renderer *renderer, struct view *vi
         .shown_light = view->plan.shown_light_after,
         .accumulate_only_count = view->plan.accumulate_only_count_after,
     };
+    trim_memory(renderer);
     return RENDER_DRAWN;
 }
 

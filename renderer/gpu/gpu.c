@@ -1,9 +1,11 @@
 #include "renderer/gpu/gpu.h"
 
 #include <assert.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "renderer/clock.h"
 #include "renderer/gpu/buffer.h"
@@ -122,6 +124,30 @@ void gpu_destroy(struct gpu **gpu_slot)
     gpu_egl_close(gpu);
     free(gpu->shader_defines);
     free(gpu);
+}
+
+// Unmaps pages of code, which are never written to, from files whose path contains `name`. The
+// mappings stay.
+static void drop_code(const char *name)
+{
+    FILE *maps = fopen("/proc/self/maps", "r");
+    char line[1024];
+    while (maps && fgets(line, sizeof(line), maps)) {
+        unsigned long from, to;
+        char access[5];
+        if (strstr(line, name) && sscanf(line, "%lx-%lx %4s", &from, &to, access) == 3 &&
+            strcmp(access, "r-xp") == 0)
+            madvise((void *)from, to - from, MADV_DONTNEED);
+    }
+    if (maps)
+        fclose(maps);
+}
+
+void gpu_trim_memory(const struct gpu *gpu)
+{
+    malloc_trim(0);
+    if (gpu->info.software)
+        drop_code("/libLLVM");
 }
 
 const struct renderer_info *gpu_get_info(const struct gpu *gpu)

@@ -27,6 +27,7 @@ struct gpu {
     struct gpu_allocation *allocations;
     struct gpu_program_library *programs;
     uint32_t current_program;
+    uint64_t programs_built;
     void (*yield)(void *user); // NULL for none
     void *yield_user;
     double waited_ms;                      // in `yield`, so far

@@ -164,6 +164,7 @@ static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *
 {
     program->file_count = 0;
     program->source_hash = HASH_START;
+    gpu->programs_built++;
     if (gpu_fault_strikes(gpu, RENDERER_FAULT_PROGRAM)) {
         error_set(out_error, "shader \"%s\" does not compile: it was told not to", program->path);
         return 0;
@@ -360,6 +361,11 @@ bool gpu_program_find_member(const struct gpu_program *program, const char *name
         return offset >= 0;
     }
     return false;
+}
+
+uint64_t gpu_programs_built(const struct gpu *gpu)
+{
+    return gpu->programs_built;
 }
 
 uint64_t gpu_program_source_hash(const struct gpu_program *program)

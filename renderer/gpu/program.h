@@ -41,6 +41,9 @@ bool gpu_program_take_new(const struct gpu_program *program);
 bool gpu_program_find_member(const struct gpu_program *program, const char *name,
                              uint32_t *out_offset);
 
+// Programs built so far.
+uint64_t gpu_programs_built(const struct gpu *gpu);
+
 // Hash of its source, as the driver gets it.
 uint64_t gpu_program_source_hash(const struct gpu_program *program);
 

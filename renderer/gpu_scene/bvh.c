@@ -11,6 +11,9 @@
 #include "renderer/scene/scene.h"
 
 #define MAX_LEAF_TRIANGLES 4u
+// Of entries in the scene cache: raise it when the layout or the building changes.
+#define CACHE_VERSION    1
+#define MAX_CACHED_BYTES (1u << 30)
 // Embree's limit.
 #define MAX_EXTENT 1e17
 
@@ -24,13 +27,25 @@ struct flat_triangle {
     uint32_t flags; // BVH_LIT_DIRECTLY, BVH_ONE_SIDED
 };
 
-// Output of Embree's builder, in its own memory.
+// Output of Embree's builder, in its own memory: nodes and leaves begin alike.
 struct built_node {
     bool leaf;
-    struct RTCBounds bounds[2]; // of the children
     struct built_node *children[2];
-    uint32_t count; // of a leaf
+    struct RTCBounds bounds[2]; // of the children
+};
+
+struct built_leaf {
+    bool leaf;
+    uint32_t count;
     uint32_t triangles[MAX_LEAF_TRIANGLES];
+};
+
+// A BVH in memory as it is uploaded, and as the scene cache keeps it; then come the triangles, in
+// the order of the leaves, and the nodes.
+struct bvh_image {
+    uint32_t triangle_count;
+    uint32_t node_count;
+    uint32_t unused[2]; // 0
 };
 
 // Build state.
@@ -38,11 +53,12 @@ struct bvh_work {
     const struct gpu_scene *gpu_scene;
     float center[3];
     uint32_t triangle_count;
-    struct flat_triangle *triangles; // in the scene's order
+    struct bvh_image *image;         // with room for as many nodes as there can be
+    struct flat_triangle *triangles; // in it, in the scene's order at first
     struct RTCBuildPrimitive *boxes;
     uint32_t node_count, sorted_count;
-    uint32_t (*nodes)[4];         // texels
-    struct flat_triangle *sorted; // in leaf order
+    uint32_t (*nodes)[4]; // texels; in `image`
+    uint32_t *order;      // of the leaves: numbers of triangles
 };
 
 static bool blocks_light(const struct gpu_scene_instance *instance)
@@ -95,13 +111,49 @@ static uint64_t content_key(const struct gpu_scene *gpu_scene)
     return key;
 }
 
+static struct flat_triangle *triangles_of(struct bvh_image *image)
+{
+    return (struct flat_triangle *)(image + 1);
+}
+
+static size_t image_bytes(size_t triangle_count, size_t node_count)
+{
+    return sizeof(struct bvh_image) + triangle_count * sizeof(struct flat_triangle) +
+           node_count * BVH_NODE_TEXELS * sizeof(uint32_t[4]);
+}
+
+// Key of everything that the BVH is built from, by content.
+static struct cache_key content_cache_key(const struct gpu_scene *gpu_scene)
+{
+    const struct scene *scene = gpu_scene->scene;
+    struct cache_key key = cache_key_start("bvh", CACHE_VERSION);
+    cache_key_add(&key, scene->vertices, scene->vertex_count * sizeof(*scene->vertices));
+    cache_key_add(&key, scene->indices, scene->index_count * sizeof(*scene->indices));
+    cache_key_add(&key, gpu_scene->bounds_min, sizeof(gpu_scene->bounds_min));
+    cache_key_add(&key, gpu_scene->bounds_max, sizeof(gpu_scene->bounds_max));
+    for (uint32_t i = 0; i < gpu_scene->counts.instances; i++) {
+        const struct gpu_scene_instance *instance = &gpu_scene->instances[i];
+        const uint32_t words[] = {
+            instance->index_first,    instance->index_count,
+            instance->first_id,       blocks_light(instance),
+            emits_directly(instance), material_of(gpu_scene, instance)->double_sided};
+        float opacity = opacity_of(gpu_scene, instance);
+        cache_key_add(&key, words, sizeof(words));
+        cache_key_add(&key, &opacity, sizeof(opacity));
+        cache_key_add(&key, instance->world_from_local, sizeof(instance->world_from_local));
+    }
+    return key;
+}
+
 bool gpu_scene_need_bvh(struct gpu_scene *gpu_scene)
 {
     uint64_t key = content_key(gpu_scene);
     if (gpu_scene->bvh && gpu_scene->bvh->key == key)
         return true;
     bvh_destroy(&gpu_scene->bvh);
-    gpu_scene->bvh = bvh_create(gpu_scene);
+    // Those of edited scenes hardly ever come back.
+    gpu_scene->bvh = bvh_create(gpu_scene, !gpu_scene->bvh_made);
+    gpu_scene->bvh_made = true;
     if (gpu_scene->bvh)
         gpu_scene->bvh->key = key;
     return gpu_scene->bvh != NULL;
@@ -181,6 +233,12 @@ static void add_instance(struct bvh_work *work, const struct gpu_scene_instance 
     }
 }
 
+static void find_center(const struct gpu_scene *gpu_scene, float out_center[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        out_center[axis] = 0.5f * (gpu_scene->bounds_min[axis] + gpu_scene->bounds_max[axis]);
+}
+
 static bool collect_triangles(struct bvh_work *work)
 {
     const struct gpu_scene *gpu_scene = work->gpu_scene;
@@ -188,14 +246,16 @@ static bool collect_triangles(struct bvh_work *work)
     for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
         maximum +=
             blocks_light(&gpu_scene->instances[i]) ? gpu_scene->instances[i].index_count / 3 : 0;
-    for (int axis = 0; axis < 3; axis++)
-        work->center[axis] = 0.5f * (gpu_scene->bounds_min[axis] + gpu_scene->bounds_max[axis]);
-    work->triangles = malloc((maximum + 1) * sizeof(*work->triangles));
-    work->sorted = malloc((maximum + 1) * sizeof(*work->sorted));
+    find_center(gpu_scene, work->center);
+    // There are fewer inner nodes than leaves; the root is a node even above a single leaf. Pages
+    // that no node reaches take no memory.
+    work->image = calloc(1, image_bytes(maximum, maximum + 1));
+    work->order = malloc((maximum + 1) * sizeof(*work->order));
     // Embree requires primitives aligned to their size.
     work->boxes = aligned_alloc(32, (maximum + 1) * sizeof(*work->boxes));
-    if (!work->triangles || !work->sorted || !work->boxes)
+    if (!work->image || !work->order || !work->boxes)
         return false;
+    work->triangles = triangles_of(work->image);
     for (uint32_t i = 0; i < gpu_scene->counts.instances; i++)
         if (blocks_light(&gpu_scene->instances[i]))
             add_instance(work, &gpu_scene->instances[i]);
@@ -230,11 +290,11 @@ static void *create_leaf(RTCThreadLocalAllocator allocator, const struct RTCBuil
                          size_t count, void *user)
 {
     (void)user;
-    struct built_node *node = rtcThreadLocalAlloc(allocator, sizeof(*node), 16);
-    *node = (struct built_node){.leaf = true, .count = (uint32_t)count};
+    struct built_leaf *leaf = rtcThreadLocalAlloc(allocator, sizeof(*leaf), 16);
+    *leaf = (struct built_leaf){.leaf = true, .count = (uint32_t)count};
     for (size_t i = 0; i < count; i++)
-        node->triangles[i] = boxes[i].primID;
-    return node;
+        leaf->triangles[i] = boxes[i].primID;
+    return leaf;
 }
 
 static void write_floats(uint32_t texel[4], const float values[3], uint32_t word)
@@ -252,10 +312,11 @@ static uint32_t flatten_child(struct bvh_work *work, const struct built_node *ch
         return BVH_LEAF;
     if (!child->leaf)
         return flatten(work, child);
+    const struct built_leaf *leaf = (const struct built_leaf *)child;
     uint32_t first = work->sorted_count;
-    for (uint32_t i = 0; i < child->count; i++)
-        work->sorted[work->sorted_count++] = work->triangles[child->triangles[i]];
-    return BVH_LEAF | first << BVH_COUNT_BITS | child->count;
+    for (uint32_t i = 0; i < leaf->count; i++)
+        work->order[work->sorted_count++] = leaf->triangles[i];
+    return BVH_LEAF | first << BVH_COUNT_BITS | leaf->count;
 }
 
 // Recursion depth is that of the BVH, at most BVH_MAX_DEPTH.
@@ -275,14 +336,30 @@ static uint32_t flatten(struct bvh_work *work, const struct built_node *node)
     return number;
 }
 
+// Moves triangles to the order of the leaves, in place: Embree puts each into one leaf.
+static void sort_triangles(struct bvh_work *work)
+{
+    for (uint32_t i = 0; i < work->triangle_count; i++) {
+        struct flat_triangle first = work->triangles[i];
+        uint32_t at = i;
+        while (work->order[at] != i) { // fills `at` from where its triangle is now
+            uint32_t from = work->order[at];
+            work->triangles[at] = work->triangles[from];
+            work->order[at] = at;
+            at = from;
+        }
+        work->triangles[at] = first;
+        work->order[at] = at;
+    }
+}
+
 static bool build(struct bvh_work *work)
 {
     RTCDevice device = rtcNewDevice(NULL);
     RTCBVH embree_bvh = device ? rtcNewBVH(device) : NULL;
-    // There are fewer inner nodes than leaves; the root is a node even above a single leaf.
-    work->nodes = calloc(((size_t)work->triangle_count + 1) * BVH_NODE_TEXELS, sizeof(uint32_t[4]));
+    work->nodes = (uint32_t(*)[4])(work->triangles + work->triangle_count);
     struct built_node *root = NULL;
-    if (embree_bvh && work->nodes && work->triangle_count > 0) {
+    if (embree_bvh && work->triangle_count > 0) {
         struct RTCBuildArguments arguments = rtcDefaultBuildArguments();
         arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
         arguments.maxBranchingFactor = 2;
@@ -298,7 +375,9 @@ static bool build(struct bvh_work *work)
         arguments.createLeaf = create_leaf;
         root = rtcBuildBVH(&arguments);
     }
-    bool done = embree_bvh && work->nodes && (root || work->triangle_count == 0);
+    free(work->boxes);
+    work->boxes = NULL;
+    bool done = embree_bvh && (root || work->triangle_count == 0);
     if (done) {
         struct built_node above = {.children = {root}};
         if (root)
@@ -325,24 +404,93 @@ static struct gpu_buffer *upload(struct gpu *gpu, const void *texels, size_t cou
                              texels);
 }
 
-struct bvh *bvh_create(const struct gpu_scene *gpu_scene)
+// From a built or restored image. NULL when memory runs out.
+static struct bvh *upload_image(const struct gpu_scene *gpu_scene, struct bvh_image *image)
 {
-    struct bvh_work work = {.gpu_scene = gpu_scene};
     struct bvh *bvh = calloc(1, sizeof(*bvh));
-    if (bvh && collect_triangles(&work) && build(&work)) {
-        memcpy(bvh->center, work.center, sizeof(bvh->center));
-        bvh->triangle_count = work.sorted_count;
-        bvh->nodes = upload(gpu_scene->gpu, work.nodes, (size_t)work.node_count * BVH_NODE_TEXELS);
-        bvh->triangles =
-            upload(gpu_scene->gpu, work.sorted, (size_t)work.sorted_count * BVH_TRIANGLE_TEXELS);
-    }
-    free(work.triangles);
-    free(work.sorted);
-    free(work.boxes);
-    free(work.nodes);
-    if (bvh && (!bvh->nodes || !bvh->triangles))
+    if (!bvh)
+        return NULL;
+    const struct flat_triangle *triangles = triangles_of(image);
+    size_t count = image->triangle_count;
+    find_center(gpu_scene, bvh->center);
+    bvh->triangle_count = image->triangle_count;
+    bvh->nodes =
+        upload(gpu_scene->gpu, triangles + count, (size_t)image->node_count * BVH_NODE_TEXELS);
+    bvh->triangles = upload(gpu_scene->gpu, triangles, count * BVH_TRIANGLE_TEXELS);
+    if (!bvh->nodes || !bvh->triangles)
         bvh_destroy(&bvh);
     return bvh;
+}
+
+// Whether a node's word leads to triangles that there are, or to a node after it at a depth that
+// shaders' stacks allow. Notes that node's depth.
+static bool check_child(const struct bvh_image *image, uint8_t depths[], uint32_t node,
+                        uint32_t word)
+{
+    if (word & BVH_LEAF) {
+        uint32_t count = word & ((1u << BVH_COUNT_BITS) - 1u);
+        uint32_t first = (word & ~BVH_LEAF) >> BVH_COUNT_BITS;
+        return count == 0 ||
+               (first <= image->triangle_count && count <= image->triangle_count - first);
+    }
+    if (word <= node || word >= image->node_count || depths[node] + 1 >= BVH_MAX_DEPTH)
+        return false;
+    depths[word] = depths[word] > depths[node] ? depths[word] : (uint8_t)(depths[node] + 1);
+    return true;
+}
+
+static bool check_image(struct bvh_image *image, size_t size)
+{
+    if (size < sizeof(*image) || image->node_count == 0 ||
+        size != image_bytes(image->triangle_count, image->node_count))
+        return false;
+    uint8_t *depths = calloc(image->node_count, sizeof(*depths));
+    const uint32_t(*nodes)[4] = (const uint32_t(*)[4])(triangles_of(image) + image->triangle_count);
+    bool fine = depths != NULL;
+    for (uint32_t i = 0; i < image->node_count && fine; i++)
+        for (uint32_t child = 0; child < 2; child++)
+            fine = fine && check_child(image, depths, i, nodes[i * BVH_NODE_TEXELS + 2 * child][3]);
+    free(depths);
+    return fine;
+}
+
+// The scene's first BVH from the scene cache; NULL if it is not there.
+static struct bvh *restore(const struct gpu_scene *gpu_scene, const struct cache_key *key)
+{
+    size_t size = 0;
+    struct bvh_image *image = scene_cache_read(key, MAX_CACHED_BYTES, &size);
+    struct bvh *bvh = image && check_image(image, size) ? upload_image(gpu_scene, image) : NULL;
+    free(image);
+    return bvh;
+}
+
+// Builds it; keeps it under `key`, if that is not NULL.
+static struct bvh *build_new(const struct gpu_scene *gpu_scene, const struct cache_key *key)
+{
+    struct bvh_work work = {.gpu_scene = gpu_scene};
+    struct bvh *bvh = NULL;
+    if (collect_triangles(&work) && build(&work) && work.sorted_count == work.triangle_count) {
+        sort_triangles(&work);
+        work.image->triangle_count = work.triangle_count;
+        work.image->node_count = work.node_count;
+        size_t bytes = image_bytes(work.triangle_count, work.node_count);
+        if (key && bytes <= MAX_CACHED_BYTES)
+            scene_cache_write(key, work.image, bytes);
+        bvh = upload_image(gpu_scene, work.image);
+    }
+    free(work.image);
+    free(work.boxes);
+    free(work.order);
+    return bvh;
+}
+
+struct bvh *bvh_create(const struct gpu_scene *gpu_scene, bool cached)
+{
+    if (!cached || !scene_cache_is_open())
+        return build_new(gpu_scene, NULL);
+    struct cache_key key = content_cache_key(gpu_scene);
+    struct bvh *bvh = restore(gpu_scene, &key);
+    return bvh ? bvh : build_new(gpu_scene, &key);
 }
 
 void bvh_destroy(struct bvh **bvh_slot)

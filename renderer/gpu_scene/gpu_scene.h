@@ -109,6 +109,7 @@ struct gpu_scene {
     float diagonal_m; // of the bounds; 1 without geometry
 
     struct bvh *bvh; // for rays; NULL until needed
+    bool bvh_made;   // there has been one
 
     bool texture_transforms;                // any texture has a KHR_texture_transform
     bool second_uv_set;                     // any texture reads the second set of coordinates

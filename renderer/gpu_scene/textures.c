@@ -150,7 +150,7 @@ static bool fill_layers(struct gpu_scene *gpu_scene, int space_number, bool made
 }
 
 static void assign_layers(struct gpu_scene *gpu_scene, struct texture_space *space,
-                         const uint32_t class_of[])
+                          const uint32_t class_of[])
 {
     const struct scene *scene = gpu_scene->scene;
     uint32_t next_layer[MAX_CLASSES_PER_SPACE] = {0};

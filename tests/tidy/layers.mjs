@@ -70,6 +70,7 @@ export const LAYERS = [
       'renderer/gpu',
       'renderer/scene',
       'renderer/image',
+      'renderer/cache',
       'shaders/shared',
       ...BASE,
       ...SETTINGS,
