@@ -45,6 +45,7 @@
 #include "renderer/import/scene_load.h"
 #include "renderer/log.h"
 #include "renderer/path_tracer/reference.h"
+#include "renderer/process_memory.h"
 #include "renderer/scene/ray_scene.h"
 #include "renderer/scene/scene.h"
 #include "renderer/settings.h"

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "renderer/process_memory.h"
+
 #define SECURITY_HEADERS                                                                           \
     "x-content-type-options: nosniff\r\n"                                                          \
     "referrer-policy: no-referrer\r\n"                                                             \
@@ -97,8 +99,10 @@ static int answer_metrics(struct network *network, struct lws *wsi)
     struct frame_stream_totals totals;
     render_thread_get_status(network->render, &status);
     frame_stream_get_totals(network->params.stream, &totals);
+    struct process_memory memory = process_memory_read();
     char body[2048];
     snprintf(body, sizeof(body),
+             "# TYPE process_resident_memory_bytes gauge\nprocess_resident_memory_bytes %llu\n"
              "# TYPE voxcast_clients gauge\nvoxcast_clients %u\n"
              "# TYPE voxcast_ready gauge\nvoxcast_ready %d\n"
              "# TYPE voxcast_scene_revision counter\nvoxcast_scene_revision %llu\n"
@@ -108,10 +112,11 @@ static int answer_metrics(struct network *network, struct lws *wsi)
              "# TYPE voxcast_frames_sent_total counter\nvoxcast_frames_sent_total %llu\n"
              "# TYPE voxcast_frames_dropped_total counter\nvoxcast_frames_dropped_total %llu\n"
              "# TYPE voxcast_sent_bytes_total counter\nvoxcast_sent_bytes_total %llu\n",
-             totals.client_count, status.ready, (unsigned long long)status.revision,
-             (unsigned long long)status.frames_drawn, (double)status.draw_us / 1e6,
-             (double)totals.encode_us / 1e6, (unsigned long long)totals.frames_sent,
-             (unsigned long long)totals.frames_dropped, (unsigned long long)totals.bytes_sent);
+             (unsigned long long)memory.rss_bytes, totals.client_count, status.ready,
+             (unsigned long long)status.revision, (unsigned long long)status.frames_drawn,
+             (double)status.draw_us / 1e6, (double)totals.encode_us / 1e6,
+             (unsigned long long)totals.frames_sent, (unsigned long long)totals.frames_dropped,
+             (unsigned long long)totals.bytes_sent);
     return answer(wsi, HTTP_STATUS_OK, "text/plain; version=0.0.4", body);
 }
 

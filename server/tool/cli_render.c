@@ -199,6 +199,10 @@ static int write_statistics(const struct render_job *job)
     cJSON_AddNumberToObject(object, "misses", (double)cache.misses);
     cJSON_AddNumberToObject(object, "invalid", (double)cache.invalid);
     cJSON_AddNumberToObject(object, "written_bytes", (double)cache.written_bytes);
+    const struct process_memory memory = process_memory_read();
+    struct cJSON *process = cJSON_AddObjectToObject(json, "process");
+    cJSON_AddNumberToObject(process, "rss_bytes", (double)memory.rss_bytes);
+    cJSON_AddNumberToObject(process, "peak_bytes", (double)memory.peak_bytes);
     if (job->options->frames == 0)
         cJSON_AddBoolToObject(json, "converged", job->converged);
     bool done = cli_write_json(job->options->stats, json, &error);

@@ -18,7 +18,14 @@ const BASE = ['renderer/error.h', 'renderer/log.h', 'renderer/clock.h', 'rendere
 const SETTINGS = ['renderer/settings.h', 'renderer/parameter_types.h'];
 
 /** What users of the renderer may include besides renderer.h: plain data and pure functions. */
-const API = ['renderer/renderer.h', 'renderer/camera.h', 'renderer/metrics', ...BASE, ...SETTINGS];
+const API = [
+  'renderer/renderer.h',
+  'renderer/process_memory.h',
+  'renderer/camera.h',
+  'renderer/metrics',
+  ...BASE,
+  ...SETTINGS,
+];
 
 /** The methods of global illumination: each folder of renderer/gi. */
 const METHODS = readdirSync(new URL('../../renderer/gi', import.meta.url), { withFileTypes: true })
