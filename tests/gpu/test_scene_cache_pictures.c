@@ -65,6 +65,8 @@ static float *draw(const struct shot *shot)
 {
     struct render_settings settings;
     render_settings_init(&settings);
+    if (shot->frames == 0)
+        settings.bounces = 1; // so that it converges soon
     struct error error = {""};
     struct renderer *renderer =
         renderer_create(&(struct renderer_params){.gpu = "software", .trace_budget = 4096}, &error);
