@@ -83,15 +83,20 @@ static void record_files(struct gpu_program *program, const struct shader_source
     program->file_count = (uint32_t)total;
 }
 
+bool gpu_program_read_stage(const struct gpu *gpu, const char *path, const char *defines,
+                            struct shader_source *source, struct error *out_error)
+{
+    const char *const texts[] = {gpu->shader_defines ? gpu->shader_defines : "", defines};
+    return shader_source_read(source, gpu->shader_dir, path, texts, 2, out_error);
+}
+
 static GLuint build_stage(struct gpu *gpu, struct gpu_program *program, GLenum stage,
                           const char *extension, struct error *out_error)
 {
     char path[SHADER_MAX_PATH + 8];
     snprintf(path, sizeof(path), "%s%s", program->path, extension);
     struct shader_source source;
-    const char *const defines[] = {gpu->shader_defines ? gpu->shader_defines : "",
-                                   program->defines};
-    bool read = shader_source_read(&source, gpu->shader_dir, path, defines, 2, out_error);
+    bool read = gpu_program_read_stage(gpu, path, program->defines, &source, out_error);
     record_files(program, &source);
     if (!read)
         return 0;

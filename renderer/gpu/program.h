@@ -4,6 +4,8 @@
 
 #include "renderer/gpu/gpu.h"
 
+struct shader_source;
+
 // The permutation of a shader file (path below the shader folder) for these defines, built on first
 // use and kept until several hundred others have been asked for. `path` names a compute shader
 // ("gbuffer.comp") or, without extension, a pair of .vert and .frag. `defines` are lines of a name
@@ -14,6 +16,12 @@ const struct gpu_program *gpu_program_get(struct gpu *gpu, const char *path, con
 // Lines of defines that stand before every shader. Call before the first program is built; copied.
 // False when memory runs out.
 bool gpu_set_shader_defines(struct gpu *gpu, const char *defines);
+
+// The very text that a stage is compiled from: the file at `path`, with its extension, and its
+// includes, below the defines of all shaders and `defines`. `source` is set in either case;
+// shader_source_finish() frees it.
+bool gpu_program_read_stage(const struct gpu *gpu, const char *path, const char *defines,
+                            struct shader_source *source, struct error *out_error);
 
 // Rebuilds programs whose files have changed on disk; checks a few times per second at most. A
 // program that fails keeps its last good build. Returns the number rebuilt; errors go to
