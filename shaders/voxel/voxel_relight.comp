@@ -30,7 +30,9 @@ struct surfel_sum {
     vec3 reflectance;
     vec3 emission;
     float opacity;
-    bool thin; // includes a side of a zero-thickness surface
+    // FACE_THIN if it includes a side of a zero-thickness surface. No bool: in arrays of structs
+    // Mesa 22.3 hands them to Vulkan as integers of one bit, which are refused.
+    uint thin;
 };
 
 uint surfel_word(uint word)
@@ -136,9 +138,9 @@ void store_side(uint cell, uint level, ivec3 voxel, uint i, surfel_sum s, inout 
     vec3 position =
         voxels.anchor + (vec3(voxel) + sub_voxel_position) * voxels.levels[level].voxel_edge_m;
     vec3 albedo = clamp(s.reflectance * inverse, 0.0, 1.0);
-    vec3 direct =
-        s.emission * (inverse / voxels.radiance_scale) +
-        albedo * direct_irradiance(position, normal, s.thin, voxels.levels[level].voxel_edge_m);
+    vec3 direct = s.emission * (inverse / voxels.radiance_scale) +
+                  albedo * direct_irradiance(position, normal, s.thin != 0u,
+                                             voxels.levels[level].voxel_edge_m);
     // Proportional to coverage: the parts of a slanted wall in neighbouring voxels add up to a
     // whole one.
     float opacity = min(s.opacity * inverse, 1.0);
@@ -149,8 +151,8 @@ void store_side(uint cell, uint level, ivec3 voxel, uint i, surfel_sum s, inout 
     uvec3 packed_position = uvec3(sub_voxel_position * 1023.0 + 0.5);
     uvec3 packed_albedo = uvec3(albedo * 1023.0 + 0.5);
     faces[words + FACE_NORMAL] = packSnorm2x16(octahedral_encode(normal));
-    faces[words + FACE_SUB_VOXEL_POSITION] = packed_position.x | (packed_position.y << 10) |
-                                             (packed_position.z << 20) | (s.thin ? FACE_THIN : 0u);
+    faces[words + FACE_SUB_VOXEL_POSITION] =
+        packed_position.x | (packed_position.y << 10) | (packed_position.z << 20) | s.thin;
     faces[words + FACE_DIRECT] = packHalf2x16(direct.rg);
     faces[words + FACE_DIRECT + 1u] = packHalf2x16(vec2(direct.b, depth));
     faces[words + FACE_ALBEDO] =
@@ -179,7 +181,7 @@ void main()
     surfel_sum surfel_sums[VOXEL_FACES];
     for (uint i = 0u; i < VOXEL_FACES; i++)
         surfel_sums[i] =
-            surfel_sum(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, false);
+            surfel_sum(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0u);
     uint at = cell_word(cell, CELL_SURFEL);
     if (at == VOXEL_NONE)
         return;
@@ -193,8 +195,8 @@ void main()
         add_surfel(surfel_sums[key & 7u], word, m, directly, 1.0);
         if ((m.flags & MATERIAL_DOUBLE_SIDED) != 0u) {
             add_surfel(surfel_sums[(key & 7u) ^ 1u], word, m, directly, -1.0);
-            surfel_sums[key & 7u].thin = true;
-            surfel_sums[(key & 7u) ^ 1u].thin = true;
+            surfel_sums[key & 7u].thin = FACE_THIN;
+            surfel_sums[(key & 7u) ^ 1u].thin = FACE_THIN;
             found |= 1u << ((key & 7u) ^ 1u);
         }
         found |= 1u << (key & 7u);
