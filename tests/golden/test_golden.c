@@ -1,7 +1,12 @@
 // Proves that images stay as they were approved: renders every built-in scene and every debug view
 // small, with fixed exposure, and compares them with the kept images. At most 0.1 % of pixels may
 // differ by more than 5/255 in any channel. On failure the actual image and an amplified difference
-// are written to the working folder. `test_golden --update` writes the kept images.
+// are written to the working folder.
+//
+//     test_golden [--update] [--driver TEXT] [NAME]...
+//
+// --update writes the kept images. With names, only these images. --driver fails unless the GL
+// renderer's name contains the text.
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -201,7 +206,19 @@ static bool is_named(const struct golden *golden, char **names)
 
 int main(int argc, char **argv)
 {
-    bool updating = argc > 1 && strcmp(argv[1], "--update") == 0;
+    bool updating = false;
+    const char *driver = "";
+    for (; argc > 1 && strncmp(argv[1], "--", 2) == 0; argc--, argv++) {
+        if (strcmp(argv[1], "--update") == 0) {
+            updating = true;
+        } else if (strcmp(argv[1], "--driver") == 0 && argc > 2) {
+            driver = argv[2];
+            argc--, argv++;
+        } else {
+            fprintf(stderr, "unknown option %s\n", argv[1]);
+            return 2;
+        }
+    }
     log_set_level(LOG_ERROR);
     struct error error;
     struct renderer *renderer = renderer_create(&(struct renderer_params){.gpu = "auto"}, &error);
@@ -209,10 +226,13 @@ int main(int argc, char **argv)
         fprintf(stderr, "no renderer: %s\n", error.message);
         return 1;
     }
+    const char *name = renderer_get_info(renderer)->gl_renderer;
+    uint32_t failed = strstr(name, driver) == NULL;
+    if (failed > 0)
+        fprintf(stderr, "the driver is %s, not %s\n", name, driver);
     struct golden goldens[64];
-    uint32_t count = list_goldens(goldens, 64), failed = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        if (argc > 2 && !is_named(&goldens[i], argv + 2))
+    for (uint32_t i = 0, count = list_goldens(goldens, 64); i < count; i++) {
+        if (argc > 1 && !is_named(&goldens[i], argv + 1))
             continue;
         uint8_t *rgb = render(renderer, &goldens[i]);
         bool done = rgb && (updating ? update(&goldens[i], rgb) : compare(&goldens[i], rgb));
