@@ -416,6 +416,7 @@ void renderer_view_get_statistics(const struct renderer *renderer, const struct 
             .ran = ran,
             .time_ms = ran ? gpu_timer_get_ms(view->timer, i) : 0.0,
             .reason = view->plan.skip_reasons[i] ? view->plan.skip_reasons[i] : "",
+            .view_bytes = ran ? pass_view_bytes(all_passes[i], view) : 0,
         };
     }
     for (uint32_t i = 0; i < EFFECT_COUNT; i++) {

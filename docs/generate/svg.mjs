@@ -13,6 +13,7 @@ text { fill: var(--dim); font: 12px system-ui, sans-serif }
 .name { fill: var(--ink); font-size: 11px }
 .name { paint-order: stroke; stroke: var(--back); stroke-width: 3px }
 .back { fill: var(--back) } .grid { stroke: var(--faint) } .point { stroke: var(--back) }
+.native { fill: #2b7fd9 } .avx2 { fill: #d9622b } .limit { fill: var(--ink) }
 .noise { stroke: var(--dim); stroke-dasharray: 1 3 }
 .front { fill: none; stroke: var(--dim); stroke-dasharray: 4 3 }
 `;
@@ -25,8 +26,19 @@ const rounded = (value) =>
     : String(value).replace(/\d+\.\d+/g, (n) => Number(n).toFixed(1));
 
 /** @param {any} results of an accuracy run @param {any} choice what the chart draws */
-export function chartSvg(results, choice) {
-  const shapes = shapesOf({ results, choice, ...SIZE }).map(({ tag, attributes, text, point }) => {
+export const chartSvg = (results, choice) => svgOf(shapesOf({ results, choice, ...SIZE }), SIZE);
+
+/**
+ * @typedef {{ tag: string, attributes: Record<string, string | number>, text?: string, point?:
+ *   any }} Shape
+ */
+
+/**
+ * @param {Shape[]} drawn
+ * @param {{ width: number, height: number }} size
+ */
+export function svgOf(drawn, { width, height }) {
+  const shapes = drawn.map(({ tag, attributes, text, point }) => {
     const shown = Object.entries(attributes).filter(
       ([name]) => !name.startsWith('aria-') && !name.startsWith('data-'),
     );
@@ -39,8 +51,8 @@ export function chartSvg(results, choice) {
     return `<${tag}${written}>${inner}</${tag}>`;
   });
   return [
-    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${SIZE.width} ${SIZE.height}" ` +
-      `width="${SIZE.width}" height="${SIZE.height}">`,
+    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" ` +
+      `width="${width}" height="${height}">`,
     `<style>${STYLE}</style>`,
     `<rect class="back" width="100%" height="100%"/>`,
     ...shapes,

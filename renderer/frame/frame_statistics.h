@@ -11,9 +11,10 @@
 
 struct pass_statistics {
     const char *name;
-    bool ran;           // in the newest frame
-    double time_ms;     // of the newest frame whose timers have arrived
-    const char *reason; // why it was skipped; "" when it ran
+    bool ran;            // in the newest frame
+    double time_ms;      // of the newest frame whose timers have arrived
+    const char *reason;  // why it was skipped; "" when it ran
+    uint64_t view_bytes; // that it reads and writes of the view's resources, each once as a whole
 };
 
 struct effect_statistics {

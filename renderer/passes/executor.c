@@ -4,6 +4,7 @@
 
 #include "renderer/frame/settings_block.h"
 #include "renderer/frame/view.h"
+#include "renderer/gpu/buffer.h"
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/timer.h"
 #include "renderer/log.h"
@@ -31,6 +32,19 @@ bool passes_check(const struct pass *const *passes, uint32_t count, struct error
         written |= passes[i]->writes;
     }
     return true;
+}
+
+uint64_t pass_view_bytes(const struct pass *pass, const struct view *view)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < RESOURCE_COUNT; i++) {
+        const uint64_t uses = ((pass->reads >> i) & 1u) + ((pass->writes >> i) & 1u);
+        if (i == RESOURCE_IDS || i == RESOURCE_DEPTH) // R32UI and 32-bit float
+            bytes += uses * view->width * view->height * 4;
+        else if (view->buffers[i])
+            bytes += uses * gpu_buffer_size_bytes(view->buffers[i]);
+    }
+    return bytes;
 }
 
 bool passes_prepare_gpu(struct gpu *gpu)

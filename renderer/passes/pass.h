@@ -67,6 +67,10 @@ bool passes_prepare_gpu(struct gpu *gpu);
 // message names the pass and the resource.
 bool passes_check(const struct pass *const *passes, uint32_t count, struct error *out_error);
 
+// Bytes of the view's resources that the pass reads, and of those that it writes. What it reads of
+// the scene and of voxels depends on the content, and does not count.
+uint64_t pass_view_bytes(const struct pass *pass, const struct view *view);
+
 #define PROGRAM_DEFINES_BYTES 512u
 
 // The lines of defines of a program under a plan.

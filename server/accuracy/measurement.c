@@ -37,12 +37,12 @@ static void add_quantiles(cJSON *object, const char *name, const struct samples 
 static void add_pass_quantiles(cJSON *pass, const struct frame_statistics *statistics,
                                uint32_t index, const void *user)
 {
-    (void)statistics;
     const struct measurement *measurement = user;
     const struct samples *pass_ms = &measurement->pass_ms[index];
     cJSON_AddBoolToObject(pass, "ran", pass_ms->count > 0);
     cJSON_AddNumberToObject(pass, "frames", pass_ms->count);
     add_quantiles(pass, "ms", pass_ms);
+    cJSON_AddNumberToObject(pass, "view_bytes", (double)statistics->passes[index].view_bytes);
 }
 
 cJSON *measurement_json(const struct measurement *measurement,

@@ -1,5 +1,5 @@
-// ./dev bench: voxcast bench of this tree, or, with --against, this tree's program compared with
-// another revision's.
+// ./dev bench: voxcast bench of this tree; with --against, this tree's program compared with
+// another revision's; with --report, docs/performance.md.
 import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';
@@ -7,6 +7,7 @@ import { fileURLToPath } from 'node:url';
 
 import { benchAgainst } from './against.mjs';
 import { CPUS, environmentOf } from './programs.mjs';
+import { benchReport } from './report.mjs';
 
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 const PROGRAM = join(ROOT, 'build/release/bin/voxcast');
@@ -14,6 +15,7 @@ const PROGRAM = join(ROOT, 'build/release/bin/voxcast');
 const HELP = `
 ./dev bench takes these, too:
   --cpu native|avx2     avx2: the driver generates no AVX-512, as where there is none
+  --report              write docs/performance.md; see ./dev bench --report --help
   --against REVISION    compare with another revision; see ./dev bench --against REVISION --help
 `;
 
@@ -47,5 +49,8 @@ function benchAlone(args) {
 
 const args = process.argv.slice(2);
 if (!existsSync(PROGRAM)) fail('build/release is not built; run ./dev bench', 1);
-if (!args.some((arg) => /^--against(=|$)/.test(arg))) benchAlone(args);
-else benchAgainst(ROOT, PROGRAM, args).catch((error) => fail(error.message, error.usage ? 2 : 1));
+const refuse = (/** @type {any} */ error) => fail(error.message, error.usage ? 2 : 1);
+if (args.includes('--report')) benchReport(ROOT, PROGRAM, args).catch(refuse);
+else if (args.some((arg) => /^--against(=|$)/.test(arg)))
+  benchAgainst(ROOT, PROGRAM, args).catch(refuse);
+else benchAlone(args);

@@ -94,16 +94,25 @@ export function buildCommit(root, commit, tell) {
   return program;
 }
 
+/** @param {string} name of a source beside this file, without .c @param {string[]} options */
+function compile(name, options) {
+  const source = fileURLToPath(new URL(`${name}.c`, import.meta.url));
+  const built = join(CACHE, `${name}-${process.pid}.so`);
+  mkdirSync(CACHE, { recursive: true });
+  process.on('exit', () => rmSync(built, { force: true }));
+  run([process.env.CC || 'cc', '-O2', ...options, '-o', built, source, '-ldl']);
+  return built;
+}
+
 /**
  * A library to preload, from a source beside this file.
  * @param {string} name  without .c
  * @returns {string} its path
  */
-export function buildPreload(name) {
-  const source = fileURLToPath(new URL(`${name}.c`, import.meta.url));
-  const library = join(CACHE, `${name}-${process.pid}.so`);
-  mkdirSync(CACHE, { recursive: true });
-  process.on('exit', () => rmSync(library, { force: true }));
-  run([process.env.CC || 'cc', '-shared', '-fPIC', '-O2', '-o', library, source, '-ldl']);
-  return library;
-}
+export const buildPreload = (name) => compile(name, ['-shared', '-fPIC']);
+
+/**
+ * What a program says that is made from a source beside this file.
+ * @param {string} name  without .c
+ */
+export const runTool = (name) => run([compile(name, [])]).trim();
