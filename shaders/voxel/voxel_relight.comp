@@ -180,8 +180,7 @@ void main()
 #endif
     surfel_sum surfel_sums[VOXEL_FACES];
     for (uint i = 0u; i < VOXEL_FACES; i++)
-        surfel_sums[i] =
-            surfel_sum(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0u);
+        surfel_sums[i] = surfel_sum(0.0, 0u, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0u);
     uint at = cell_word(cell, CELL_SURFEL);
     if (at == VOXEL_NONE)
         return;

@@ -7,7 +7,15 @@
 
 #include <cmocka.h>
 
+#include "voxcast_paths.h"
+
 static struct renderer *shared_renderer;
+
+const char *test_shader_dir(void)
+{
+    const char *folder = getenv("VOXCAST_SHADER_DIR");
+    return folder ? folder : VOXCAST_SOURCE_DIR "/shaders";
+}
 
 struct renderer *test_renderer(void)
 {

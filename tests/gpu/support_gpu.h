@@ -11,6 +11,9 @@ struct test_picture {
     float *pixels;
 };
 
+// The folder of shaders: this tree's, or $VOXCAST_SHADER_DIR, where the tests run elsewhere.
+const char *test_shader_dir(void);
+
 // The process's renderer; fails the test with the reason if there is none.
 struct renderer *test_renderer(void);
 

@@ -11,7 +11,6 @@
 #include "renderer/frame/frame_block.h"
 #include "renderer/gi/gi_method.h"
 #include "support_gpu.h"
-#include "voxcast_paths.h"
 
 #define BOUND_M 30.0f
 #define SPECK_M 0.001f
@@ -19,9 +18,8 @@
 void voxel_rig_init(struct voxel_rig *rig, struct scene *scene)
 {
     struct error error = {""};
-    const char *folder = getenv("VOXCAST_SHADER_DIR");
     memset(rig, 0, sizeof(*rig));
-    rig->gpu = gpu_create("auto", folder ? folder : VOXCAST_SOURCE_DIR "/shaders", &error);
+    rig->gpu = gpu_create("auto", test_shader_dir(), &error);
     if (!rig->gpu)
         fail_msg("%s", error.message);
     assert_true(passes_prepare_gpu(rig->gpu));

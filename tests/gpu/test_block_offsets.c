@@ -14,6 +14,7 @@
 #include "renderer/frame/settings_block.h"
 #include "renderer/gpu/program.h"
 #include "renderer/passes/pass.h"
+#include "support_gpu.h"
 #include "shared/area_light_block.h"
 #include "shared/environment_block.h"
 #include "shared/frame_block.h"
@@ -24,7 +25,6 @@
 #include "shared/texture_block.h"
 #include "shared/voxel_block.h"
 #include "shared/voxel_work.h"
-#include "voxcast_paths.h"
 
 static const char shader[] =
     "#include \"shared/area_light_block.h\"\n"
@@ -71,7 +71,7 @@ static void write_shader(const char *folder)
 {
     char path[256], target[512];
     snprintf(path, sizeof(path), "%s/shared", folder);
-    snprintf(target, sizeof(target), "%s/shaders/shared", VOXCAST_SOURCE_DIR);
+    snprintf(target, sizeof(target), "%s/shared", test_shader_dir());
     assert_int_equal(symlink(target, path), 0);
     snprintf(path, sizeof(path), "%s/offsets.comp", folder);
     FILE *file = fopen(path, "w");
@@ -128,7 +128,7 @@ static void settings_are_the_drivers(void **state)
 #undef PARAMETER
     };
     struct error error = {""};
-    struct gpu *gpu = gpu_create("auto", VOXCAST_SOURCE_DIR "/shaders", &error);
+    struct gpu *gpu = gpu_create("auto", test_shader_dir(), &error);
     if (!gpu)
         fail_msg("%s", error.message);
     assert_true(passes_prepare_gpu(gpu));

@@ -13,7 +13,6 @@
 #include <cmocka.h>
 
 #include "support_gpu.h"
-#include "voxcast_paths.h"
 
 static void draw_and_drop(struct renderer *renderer, struct view *view,
                           const struct frame_params *params)
@@ -365,7 +364,7 @@ static void test_broken_shader_keeps_the_last_good_one(void **state)
     (void)state;
     char folder[] = "/tmp/voxcast-shaders-XXXXXX";
     assert_non_null(mkdtemp(folder));
-    assert_int_equal(run("cp -r '%s'/. '%s'", VOXCAST_SOURCE_DIR "/shaders", folder), 0);
+    assert_int_equal(run("cp -r '%s'/. '%s'", test_shader_dir(), folder), 0);
     struct error error = {""};
     struct renderer *renderer = renderer_create(
         &(struct renderer_params){.shader_dir = folder, .watch_shaders = true}, &error);
@@ -385,9 +384,8 @@ static void test_broken_shader_keeps_the_last_good_one(void **state)
     params.camera.eye[0] = 0.1f;
     draw_and_drop(renderer, view, &params);
 
-    assert_int_equal(run("cp '%s/light/emission.comp' '%s/light/emission.comp'",
-                         VOXCAST_SOURCE_DIR "/shaders", folder),
-                     0);
+    assert_int_equal(
+        run("cp '%s/light/emission.comp' '%s/light/emission.comp'", test_shader_dir(), folder), 0);
     assert_int_equal(renderer_poll_shaders(renderer, &error), 1);
     params.camera.eye[0] = 0.2f;
     draw_and_drop(renderer, view, &params);

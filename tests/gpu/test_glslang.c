@@ -21,8 +21,8 @@
 
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/shader_source.h"
+#include "support_gpu.h"
 #include "support_permutations.h"
-#include "voxcast_paths.h"
 
 #define MAX_TEXTS   16384
 #define MAX_PRINTED 20
@@ -142,7 +142,7 @@ static struct dump *dump_create(void)
     snprintf(dump->folder, sizeof(dump->folder), "%s/voxcast-glslang-XXXXXX",
              temporary ? temporary : "/tmp");
     assert_non_null(mkdtemp(dump->folder));
-    dump->gpu = gpu_create("auto", VOXCAST_SOURCE_DIR "/shaders", &error);
+    dump->gpu = gpu_create("auto", test_shader_dir(), &error);
     if (!dump->gpu)
         fail_msg("%s", error.message);
     assert_true(passes_prepare_gpu(dump->gpu));

@@ -17,8 +17,8 @@
 
 #include "renderer/gpu/program.h"
 #include "renderer/gpu/shader_source.h"
+#include "support_gpu.h"
 #include "support_permutations.h"
-#include "voxcast_paths.h"
 
 #define FEW 24 // permutations
 
@@ -112,9 +112,8 @@ static void test_reachable_permutations_compile(void **state)
 {
     (void)state;
     struct error error = {""};
-    const char *folder = getenv("VOXCAST_SHADER_DIR");
     struct tally tally = {
-        .gpu = gpu_create("auto", folder ? folder : VOXCAST_SOURCE_DIR "/shaders", &error),
+        .gpu = gpu_create("auto", test_shader_dir(), &error),
         .pairs = calloc(1, sizeof(*tally.pairs)),
     };
     if (!tally.gpu)
@@ -137,7 +136,7 @@ static void test_a_resource_that_is_not_declared_is_found(void **state)
 {
     (void)state;
     struct error error = {""};
-    struct gpu *gpu = gpu_create("auto", VOXCAST_SOURCE_DIR "/shaders", &error);
+    struct gpu *gpu = gpu_create("auto", test_shader_dir(), &error);
     if (!gpu)
         fail_msg("%s", error.message);
     assert_true(passes_prepare_gpu(gpu));
