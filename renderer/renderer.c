@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <float.h>
+#include <malloc.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -136,7 +137,7 @@ bool renderer_set_scene(struct renderer *renderer, struct scene *scene, struct e
     gpu_scene_destroy(&renderer->gpu_scene);
     renderer->gpu_scene = gpu_scene;
     renderer->scene = scene;
-    gpu_trim_memory(renderer->gpu);
+    malloc_trim(0);
     return true;
 }
 
@@ -218,7 +219,7 @@ static void trim_memory(struct renderer *renderer)
     uint64_t programs = gpu_programs_built(renderer->gpu);
     if (bvh == renderer->trimmed_bvh && programs == renderer->trimmed_programs)
         return;
-    gpu_trim_memory(renderer->gpu);
+    malloc_trim(0);
     renderer->trimmed_bvh = bvh;
     renderer->trimmed_programs = programs;
 }

@@ -207,10 +207,10 @@ static bool write_all(int file, const void *bytes, size_t size)
     return true;
 }
 
-// The content of an open entry; NULL if anything is wrong with it. Sets *out_short where only
-// memory was short.
+// The content of an open entry; NULL if anything is wrong with it. Sets *out_unread where nothing
+// may be wrong, but it is larger than asked for, or memory was short.
 static void *read_entry(int file, const struct cache_key *key, size_t max_bytes, size_t *out_size,
-                        bool *out_short)
+                        bool *out_unread)
 {
     struct stat status;
     struct entry_header header;
@@ -218,11 +218,10 @@ static void *read_entry(int file, const struct cache_key *key, size_t max_bytes,
         !read_all(file, &header, sizeof(header)) ||
         memcmp(header.magic, magic, sizeof(magic)) != 0 ||
         memcmp(&header.key, key, sizeof(*key)) != 0 || header.unused[0] != 0 ||
-        header.unused[1] != 0 || header.size > max_bytes ||
-        (uint64_t)status.st_size != sizeof(header) + header.size)
+        header.unused[1] != 0 || (uint64_t)status.st_size != sizeof(header) + header.size)
         return NULL;
-    void *bytes = malloc(header.size ? header.size : 1);
-    *out_short = !bytes;
+    void *bytes = header.size <= max_bytes ? malloc(header.size ? header.size : 1) : NULL;
+    *out_unread = !bytes;
     struct cache_key sum = checksum_start(key);
     if (bytes && read_all(file, bytes, header.size)) {
         cache_key_add(&sum, bytes, header.size);
@@ -252,16 +251,16 @@ void *scene_cache_read(const struct cache_key *key, size_t max_bytes, size_t *ou
     char name[NAME_BYTES];
     name_of(key, name);
     void *bytes = NULL;
-    bool memory_short = false;
+    bool unread = false;
     // Whatever lies there under the name, opening it must not block.
     int file = openat(folder, name, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (file >= 0) {
-        bytes = read_entry(file, key, max_bytes, out_size, &memory_short);
+        bytes = read_entry(file, key, max_bytes, out_size, &unread);
         if (bytes)
             futimens(file, NULL); // its newest use
         close(file);
     }
-    bool invalid = !bytes && !memory_short && (file >= 0 || errno == ELOOP);
+    bool invalid = !bytes && !unread && (file >= 0 || errno == ELOOP);
     if (invalid)
         unlinkat(folder, name, 0);
     count_read(bytes != NULL, invalid);

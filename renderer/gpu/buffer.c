@@ -42,25 +42,30 @@ static bool map_pinned(struct gpu_buffer *buffer)
     return true;
 }
 
-// Gives a new buffer its storage: `data`, or zeros.
-static void create_storage(struct gpu *gpu, struct gpu_buffer *buffer, const void *data,
+// Storage in memory of ours. False, and the buffer has none, where it is left to the driver.
+static bool create_pinned(struct gpu *gpu, struct gpu_buffer *buffer, const void *data,
+                          size_t data_bytes)
+{
+    if (!gpu->pinned_memory || buffer->size_bytes < PINNED_MIN_BYTES || !map_pinned(buffer))
+        return false;
+    if (data)
+        memcpy(buffer->pinned, data, data_bytes);
+    glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, buffer->name);
+    glBufferStorage(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, (GLsizeiptr)buffer->size_bytes,
+                    buffer->pinned, GL_DYNAMIC_STORAGE_BIT);
+    glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, 0);
+    return true;
+}
+
+// Storage of the driver's: `data`, then zeros.
+static void create_storage(struct gpu_buffer *buffer, GLbitfield flags, const void *data,
                            size_t data_bytes)
 {
     bool whole = data && data_bytes == buffer->size_bytes;
-    GLsizeiptr size = (GLsizeiptr)buffer->size_bytes;
-    if (gpu->pinned_memory && buffer->size_bytes >= PINNED_MIN_BYTES && map_pinned(buffer)) {
-        if (data)
-            memcpy(buffer->pinned, data, data_bytes);
-        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, buffer->name);
-        glBufferStorage(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, size, buffer->pinned,
-                        GL_DYNAMIC_STORAGE_BIT);
-        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, 0);
-        return;
-    }
-    glNamedBufferStorage(buffer->name, size, whole ? data : NULL, GL_DYNAMIC_STORAGE_BIT);
+    glNamedBufferStorage(buffer->name, (GLsizeiptr)buffer->size_bytes, whole ? data : NULL, flags);
     if (!whole)
         gpu_buffer_clear(buffer);
-    if (data && !whole)
+    if (data && !whole && data_bytes > 0)
         gpu_buffer_write(buffer, 0, data_bytes, data);
 }
 
@@ -73,12 +78,12 @@ struct gpu_buffer *gpu_buffer_create(struct gpu *gpu, const char *label, enum gp
     buffer->size_bytes = size_bytes < GPU_BUFFER_MIN_BYTES ? GPU_BUFFER_MIN_BYTES : size_bytes;
     gpu_account(gpu, &buffer->allocation, label, buffer->size_bytes);
     glCreateBuffers(1, &buffer->name);
+    GLbitfield flags = GL_DYNAMIC_STORAGE_BIT;
     if (kind == GPU_BUFFER_READBACK)
-        glNamedBufferStorage(buffer->name, (GLsizeiptr)buffer->size_bytes, NULL,
-                             GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT |
-                                 GL_CLIENT_STORAGE_BIT | GL_DYNAMIC_STORAGE_BIT);
-    else
-        create_storage(gpu, buffer, data, size_bytes);
+        flags |=
+            GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT | GL_CLIENT_STORAGE_BIT;
+    if (kind == GPU_BUFFER_READBACK || !create_pinned(gpu, buffer, data, size_bytes))
+        create_storage(buffer, flags, data, size_bytes);
     if (gpu_take_out_of_memory(gpu))
         goto fail;
     glObjectLabel(GL_BUFFER, buffer->name, -1, label);

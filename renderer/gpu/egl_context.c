@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/auxv.h>
 #include <unistd.h>
 
 #include "renderer/gpu/internal.h"
@@ -173,6 +174,18 @@ static bool huge_pages_on_demand(void)
     return read && strstr(text, "[madvise]");
 }
 
+// Whether this program can start itself anew with a further variable in its environment.
+static bool can_start_anew(void)
+{
+#ifdef VOXCAST_SANITIZED
+    return false; // and has a malloc() of its own
+#else
+    // A privileged program's loader drops the variable, so that it would start again and again.
+    // Where the loader was called as a program, it is what would be started.
+    return !getauxval(AT_SECURE) && getauxval(AT_BASE) != 0;
+#endif
+}
+
 // Has malloc() ask for huge pages, which it reads from the environment when the program starts: so
 // the program starts once more. A CPU driver keeps its textures there, and writes all of each when
 // it is made: 0.1 s of the 1.1 s that the Cornell box takes to its first frame, and a fifth of
@@ -181,16 +194,17 @@ static void use_huge_pages(char *const arguments[])
 {
     char path[1024], tunables[1024];
     const char *given = getenv("GLIBC_TUNABLES");
-    if ((given && strstr(given, "glibc.malloc.hugetlb")) || !huge_pages_on_demand())
+    if ((given && strstr(given, "glibc.malloc.hugetlb")) || !huge_pages_on_demand() ||
+        !can_start_anew())
         return;
-    ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - 1);
+    ssize_t length = readlink("/proc/self/exe", path, sizeof(path));
     int used = snprintf(tunables, sizeof(tunables), "%s%sglibc.malloc.hugetlb=1",
                         given ? given : "", given && *given ? ":" : "");
-    if (length <= 0 || used >= (int)sizeof(tunables))
+    if (length <= 0 || length >= (ssize_t)sizeof(path) || used >= (int)sizeof(tunables))
         return;
     path[length] = '\0';
-    setenv("GLIBC_TUNABLES", tunables, 1);
-    execv(path, arguments); // returns only where it fails, which costs speed alone
+    if (setenv("GLIBC_TUNABLES", tunables, 1) == 0)
+        execv(path, arguments); // returns only where it fails, which costs speed alone
 }
 
 // llvmpipe splits a dispatch into one run of groups a thread, once, however dear its groups are.

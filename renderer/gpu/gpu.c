@@ -1,11 +1,9 @@
 #include "renderer/gpu/gpu.h"
 
 #include <assert.h>
-#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 #include "renderer/clock.h"
 #include "renderer/gpu/buffer.h"
@@ -105,7 +103,9 @@ struct gpu *gpu_create(const char *choice, const char *shader_dir, struct error 
     glEnable(GL_DEPTH_TEST);
     glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gpu->pinned_memory = gpu->info.software && epoxy_has_gl_extension("GL_AMD_pinned_memory");
+    // llvmpipe itself, that is, and not what draws by it, such as zink.
+    gpu->pinned_memory = strncmp(gpu->info.gl_renderer, "llvmpipe", 8) == 0 &&
+                         epoxy_has_gl_extension("GL_AMD_pinned_memory");
     gpu->info.gpu_timers = !gpu->info.software && gpu_timer_probe(gpu);
     return gpu;
 fail:
@@ -124,30 +124,6 @@ void gpu_destroy(struct gpu **gpu_slot)
     gpu_egl_close(gpu);
     free(gpu->shader_defines);
     free(gpu);
-}
-
-// Unmaps pages of code, which are never written to, from files whose path contains `name`. The
-// mappings stay.
-static void drop_code(const char *name)
-{
-    FILE *maps = fopen("/proc/self/maps", "r");
-    char line[1024];
-    while (maps && fgets(line, sizeof(line), maps)) {
-        unsigned long from, to;
-        char access[5];
-        if (strstr(line, name) && sscanf(line, "%lx-%lx %4s", &from, &to, access) == 3 &&
-            strcmp(access, "r-xp") == 0)
-            madvise((void *)from, to - from, MADV_DONTNEED);
-    }
-    if (maps)
-        fclose(maps);
-}
-
-void gpu_trim_memory(const struct gpu *gpu)
-{
-    malloc_trim(0);
-    if (gpu->info.software)
-        drop_code("/libLLVM");
 }
 
 const struct renderer_info *gpu_get_info(const struct gpu *gpu)

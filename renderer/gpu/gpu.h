@@ -24,11 +24,6 @@ struct gpu_framebuffer;
 // first.
 void gpu_prepare_process(char *const arguments[]);
 
-// Gives back to the system what nobody uses once shaders are compiled: memory that malloc() has got
-// back, and, of a CPU driver, pages of the compiler's code (45 MB), which come back from the page
-// cache when the next shader is compiled. Takes a few milliseconds.
-void gpu_trim_memory(const struct gpu *gpu);
-
 // `gpu` is "auto", "software" or a device index. On failure the message names what is missing.
 struct gpu *gpu_create(const char *gpu, const char *shader_dir, struct error *out_error);
 void gpu_destroy(struct gpu **gpu);

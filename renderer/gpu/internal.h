@@ -33,7 +33,7 @@ struct gpu {
     double waited_ms;                      // in `yield`, so far
     uint64_t faults[RENDERER_FAULT_COUNT]; // events left until the one that fails; 0: none
     bool lost;
-    bool pinned_memory; // buffers can lie in memory of ours (GL_AMD_pinned_memory), on CPUs
+    bool pinned_memory; // buffers can lie in memory of ours (GL_AMD_pinned_memory)
 };
 
 void gpu_account(struct gpu *gpu, struct gpu_allocation *allocation, const char *label,

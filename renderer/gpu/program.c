@@ -164,11 +164,11 @@ bool gpu_set_shader_defines(struct gpu *gpu, const char *defines)
     return gpu->shader_defines != NULL;
 }
 
-// Builds a GL program object; 0 on failure. Replaces the program's list of files in either case.
+// Builds a GL program object; 0 on failure, and then the hash of the source stays that of the last
+// one. Replaces the program's list of files in either case.
 static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *out_error)
 {
     program->file_count = 0;
-    program->source_hash = HASH_START;
     gpu->programs_built++;
     if (gpu_fault_strikes(gpu, RENDERER_FAULT_PROGRAM)) {
         error_set(out_error, "shader \"%s\" does not compile: it was told not to", program->path);
@@ -178,6 +178,8 @@ static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *
     bool compute = length > 5 && strcmp(program->path + length - 5, ".comp") == 0;
     GLuint shaders[2] = {0, 0};
     uint32_t count = compute ? 1 : 2;
+    uint64_t last_hash = program->source_hash;
+    program->source_hash = HASH_START;
     if (compute) {
         shaders[0] = build_stage(gpu, program, GL_COMPUTE_SHADER, "", out_error);
     } else {
@@ -208,6 +210,8 @@ static GLuint build(struct gpu *gpu, struct gpu_program *program, struct error *
     for (uint32_t i = 0; i < count; i++)
         if (shaders[i])
             glDeleteShader(shaders[i]);
+    if (!name)
+        program->source_hash = last_hash;
     return name;
 }
 
