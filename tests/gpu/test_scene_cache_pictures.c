@@ -60,7 +60,10 @@ struct shot {
     uint32_t frames;
 };
 
-// The linear image of the last frame, as a process draws it that has just begun.
+// One for all: it takes 2 s to make programs.
+static struct renderer *renderer;
+
+// The linear image of the last frame. Nothing but programs is left of what was drawn before.
 static float *draw(const struct shot *shot)
 {
     struct render_settings settings;
@@ -68,10 +71,8 @@ static float *draw(const struct shot *shot)
     if (shot->frames == 0)
         settings.bounces = 1; // so that it converges soon
     struct error error = {""};
-    struct renderer *renderer =
-        renderer_create(&(struct renderer_params){.gpu = "software", .trace_budget = 4096}, &error);
     struct scene *scene = scene_load(shot->source, &error);
-    if (!renderer || !scene || !renderer_set_scene(renderer, scene, &error))
+    if (!scene || !renderer_set_scene(renderer, scene, &error))
         fail_msg("%s", error.message);
     struct view *view = renderer_view_create(renderer);
     struct frame_params params = {.width = WIDTH,
@@ -104,8 +105,25 @@ static float *draw(const struct shot *shot)
     renderer_view_destroy(renderer, &view);
     renderer_set_scene(renderer, NULL, NULL);
     scene_destroy(&scene);
-    renderer_destroy(&renderer);
     return pixels;
+}
+
+static int start_renderer(void **state)
+{
+    (void)state;
+    struct error error = {""};
+    renderer =
+        renderer_create(&(struct renderer_params){.gpu = "software", .trace_budget = 4096}, &error);
+    if (!renderer)
+        print_error("%s\n", error.message);
+    return renderer ? 0 : -1;
+}
+
+static int stop_renderer(void **state)
+{
+    (void)state;
+    renderer_destroy(&renderer);
+    return 0;
 }
 
 // Calls back for each entry's path.
@@ -254,5 +272,5 @@ int main(void)
         TEST(test_scene_from_a_file),
         TEST(test_forged_entries),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, start_renderer, stop_renderer);
 }

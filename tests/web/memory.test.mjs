@@ -11,8 +11,9 @@ import test from 'node:test';
 
 const SCENE = join(process.env.VOXCAST_SCENES ?? '', 'sponza/sponza.glb');
 
-// Measured: 414 MB with an empty cache, 376 with a filled one; 160 of it are textures.
-const MAX_PEAK_BYTES = 450e6;
+// Measured: 448 MB with an empty cache, 435 with a filled one; 160 of it are textures, and 45 code of
+// the shader compiler.
+const MAX_PEAK_BYTES = 500e6;
 
 const missing = existsSync(SCENE) ? false : `${SCENE} is not there`;
 const voxcast = process.env.VOXCAST ?? '';
