@@ -51,8 +51,8 @@ void gpu_texture_read(const struct gpu_texture *texture, float *out_texels, size
 // GPU.
 void gpu_texture_fetch(const struct gpu_texture *texture, void *out_pixels, size_t size_bytes);
 
-// The same of one level of one layer of RGBA8 formats, as gpu_texture_write() takes it; of sRGB as
-// stored.
+// Copies one level of one layer of an RGBA8 array to host memory, as gpu_texture_write() takes it;
+// of sRGB as stored.
 void gpu_texture_read_layer(const struct gpu_texture *texture, uint32_t level, uint32_t layer,
                             void *out_pixels);
 

@@ -41,7 +41,7 @@ static uint32_t count_differences(const struct test_picture *a, const struct tes
 static const struct {
     float eye[3];
     float target[3];
-} places[] = {
+} poses[] = {
     {{0.0f, 1.7f, 0.0f}, {6.0f, 2.0f, 0.5f}},   {{-7.0f, 1.7f, 3.0f}, {7.0f, 1.5f, 3.2f}},
     {{3.0f, 4.5f, -3.0f}, {-5.0f, 4.0f, 0.0f}}, {{0.0f, 1.7f, 0.0f}, {-6.0f, 2.0f, -0.5f}},
     {{0.0f, 12.0f, 0.1f}, {0.0f, 0.0f, 0.0f}},
@@ -59,11 +59,11 @@ static void test_moving_camera(void **state)
     params.debug_view = DEBUG_VIEW_IDS;
     struct view *moving = renderer_view_create(renderer);
     uint32_t twice = 0;
-    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++)
+    for (size_t i = 0; i < sizeof(poses) / sizeof(poses[0]); i++)
         for (uint32_t step = 0; step < 4; step++) {
             for (int axis = 0; axis < 3; axis++) {
-                params.camera.eye[axis] = places[i].eye[axis] + 0.05f * (float)step;
-                params.camera.target[axis] = places[i].target[axis];
+                params.camera.eye[axis] = poses[i].eye[axis] + 0.05f * (float)step;
+                params.camera.target[axis] = poses[i].target[axis];
             }
             moving->occlusion.frames_until = 0; // also where it would not pay
             twice += moving->occlusion.has_seen;
