@@ -124,28 +124,34 @@ float edge_integral(vec3 a, vec3 b, vec3 n)
 float quad_form_factor(vec3 corners[4], vec3 n)
 {
     vec3 directions[4];
-    float heights[4];
+    float heights[4]; // sines of the elevation; what is at the horizon counts as below
     for (int i = 0; i < 4; i++) {
         directions[i] = safe_normalize(corners[i], n);
-        heights[i] = dot(corners[i], n);
+        float height = dot(directions[i], n);
+        heights[i] = height > 1e-6 ? height : min(height, 0.0);
     }
-    float sum = 0.0;
-    vec3 entry = n; // where the outline crosses the horizon upwards, and downwards
+    // A convex outline crosses the horizon once upwards and once downwards, if at all. The great
+    // circle through two directions meets it at their mean weighted by each other's height.
+    vec3 entry = n;
     vec3 leave = n;
+    for (int i = 0; i < 4; i++) {
+        int next = (i + 1) & 3;
+        vec3 crossing = directions[i] * abs(heights[next]) + directions[next] * abs(heights[i]);
+        entry = heights[i] <= 0.0 && heights[next] > 0.0 ? crossing : entry;
+        leave = heights[i] > 0.0 && heights[next] <= 0.0 ? crossing : leave;
+    }
+    entry *= inversesqrt(max(dot(entry, entry), 1e-30));
+    leave *= inversesqrt(max(dot(leave, leave), 1e-30));
+    float sum = edge_integral(leave, entry, n); // the fit is of angle / (2 pi sine)
     for (int i = 0; i < 4; i++) {
         int next = (i + 1) & 3;
         bool above = heights[i] > 0.0;
         bool next_above = heights[next] > 0.0;
-        bool crosses = above != next_above;
-        float t = crosses ? heights[i] / (heights[i] - heights[next]) : 0.0;
-        vec3 crossing = safe_normalize(mix(corners[i], corners[next], t), n);
-        vec3 from = above ? directions[i] : crossing;
-        vec3 to = next_above ? directions[next] : crossing;
+        vec3 from = above ? directions[i] : entry;
+        vec3 to = next_above ? directions[next] : leave;
         sum += above || next_above ? edge_integral(from, to, n) : 0.0;
-        entry = crosses && next_above ? crossing : entry;
-        leave = crosses && above ? crossing : leave;
     }
-    return sum + edge_integral(leave, entry, n); // the fit is of angle / (2 pi sine)
+    return sum;
 }
 
 #if SPECULAR
