@@ -171,6 +171,9 @@ int bench_effects(int argc, char **argv)
     cli_take_text(&parser, "environment", &options.environment);
     if (!cli_parse(&parser, argc, argv, &status))
         return status;
+    // Its frames wait for a camera at rest, which never comes here.
+    if (options.gi == GI_METHOD_REFERENCE)
+        return cli_fail(CLI_EXIT_USAGE, "--gi is \"reference\"; allowed: none, clipmap, grid");
     struct error error = {""};
     struct effects_bench bench = {.options = &options};
     bench.renderer = renderer_create(&(struct renderer_params){.gpu = options.gpu}, &error);

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "server/tool/cli.h"
+#include "server/tool/cli_bench.h"
 #include "server/tool/shot_options.h"
 
 struct values {
@@ -139,6 +140,15 @@ static void test_camera_is_chosen(void **state)
     scene_destroy(&scene);
 }
 
+// The reference draws only where the camera rests: a measurement of a moving one would never end.
+static void test_moving_reference_is_refused(void **state)
+{
+    (void)state;
+    char command[] = "effects", option[] = "--gi", method[] = "reference";
+    char *arguments[] = {command, option, method, NULL};
+    assert_int_equal(bench_effects(3, arguments), CLI_EXIT_USAGE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -147,6 +157,7 @@ int main(void)
         cmocka_unit_test(test_wrong_values_are_refused),
         cmocka_unit_test(test_help_ends_without_error),
         cmocka_unit_test(test_camera_is_chosen),
+        cmocka_unit_test(test_moving_reference_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
