@@ -76,7 +76,7 @@ static bool fit_pixels(struct occlusion *occlusion, uint32_t width, uint32_t hei
     free(occlusion->pixels);
     free(occlusion->farthest);
     occlusion->pixels = malloc((size_t)width * height * sizeof(*occlusion->pixels));
-    occlusion->farthest = malloc(count_tiles(width, height) * sizeof(*occlusion->farthest));
+    occlusion->farthest = calloc(count_tiles(width, height), sizeof(*occlusion->farthest));
     bool done = occlusion->pixels && occlusion->farthest;
     occlusion->width = done ? width : 0;
     occlusion->height = done ? height : 0;
