@@ -7,7 +7,6 @@ import { fileURLToPath } from 'node:url';
 
 import { benchAgainst } from './against.mjs';
 import { CPUS, environmentOf } from './programs.mjs';
-import { benchReport } from './report.mjs';
 
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 const PROGRAM = join(ROOT, 'build/release/bin/voxcast');
@@ -47,10 +46,16 @@ function benchAlone(args) {
   process.exitCode = status ?? 1;
 }
 
+/** The page has modules of its own, which nothing else needs. @param {string[]} args */
+async function writeReport(args) {
+  const { benchReport } = await import('./report.mjs');
+  await benchReport(ROOT, PROGRAM, args);
+}
+
 const args = process.argv.slice(2);
 if (!existsSync(PROGRAM)) fail('build/release is not built; run ./dev bench', 1);
 const refuse = (/** @type {any} */ error) => fail(error.message, error.usage ? 2 : 1);
-if (args.includes('--report')) benchReport(ROOT, PROGRAM, args).catch(refuse);
+if (args.includes('--report')) writeReport(args).catch(refuse);
 else if (args.some((arg) => /^--against(=|$)/.test(arg)))
   benchAgainst(ROOT, PROGRAM, args).catch(refuse);
 else benchAlone(args);
