@@ -211,7 +211,7 @@ bool occlusion_list_rest(struct occlusion *occlusion, const struct gpu_scene *gp
 {
     if (!fit_pixels(occlusion, width, height))
         return false;
-    gpu_texture_fetch(depth, occlusion->pixels, (size_t)width * height * sizeof(float));
+    gpu_texture_read_layer(depth, 0, 0, occlusion->pixels);
     reduce_pixels(occlusion, (const float *)occlusion->pixels);
     reduce_tiles(occlusion);
     return draw_list_fill_blocks(&occlusion->list, gpu_scene, clip_from_world, eye,
@@ -229,7 +229,7 @@ bool occlusion_note_seen(struct occlusion *occlusion, const struct gpu_scene *gp
     }
     if (!occlusion->seen || !fit_pixels(occlusion, width, height))
         return false;
-    gpu_texture_fetch(ids, occlusion->pixels, (size_t)width * height * sizeof(uint32_t));
+    gpu_texture_read_layer(ids, 0, 0, occlusion->pixels);
     memset(occlusion->seen, 0, count);
     occlusion->has_seen = false;
     for (size_t i = 0; i < (size_t)width * height; i++) {

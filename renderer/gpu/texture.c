@@ -126,13 +126,6 @@ void gpu_texture_read(const struct gpu_texture *texture, float *out_texels, size
     glGetTextureImage(texture->name, 0, GL_RGBA, GL_FLOAT, (GLsizei)size_bytes, out_texels);
 }
 
-void gpu_texture_fetch(const struct gpu_texture *texture, void *out_pixels, size_t size_bytes)
-{
-    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-    glGetTextureImage(texture->name, 0, formats[texture->params.format].format,
-                      formats[texture->params.format].type, (GLsizei)size_bytes, out_pixels);
-}
-
 void gpu_texture_read_layer(const struct gpu_texture *texture, uint32_t level, uint32_t layer,
                             void *out_pixels)
 {
@@ -141,6 +134,7 @@ void gpu_texture_read_layer(const struct gpu_texture *texture, uint32_t level, u
     width = width ? width : 1;
     height = height ? height : 1;
     uint32_t bytes = formats[params->format].bytes;
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGetTextureSubImage(texture->name, (GLint)level, 0, 0, (GLint)layer, width, height, 1,
                          formats[params->format].format, formats[params->format].type,
                          width * height * (GLsizei)bytes, out_pixels);

@@ -47,12 +47,8 @@ void gpu_texture_clear(struct gpu_texture *texture);
 // Copies a 3D texture to host memory, 4 floats per texel, x fastest; waits for the GPU. For tests.
 void gpu_texture_read(const struct gpu_texture *texture, float *out_texels, size_t size_bytes);
 
-// Copies a 2D texture to host memory, in the form that gpu_texture_write() takes; waits for the
-// GPU.
-void gpu_texture_fetch(const struct gpu_texture *texture, void *out_pixels, size_t size_bytes);
-
-// Copies one level of one layer of an RGBA8 array to host memory, as gpu_texture_write() takes it;
-// of sRGB as stored.
+// Copies one level of one layer to host memory, as gpu_texture_write() takes it (RGBA16F excepted);
+// of sRGB as stored. A 2D texture is layer 0. Waits for the GPU.
 void gpu_texture_read_layer(const struct gpu_texture *texture, uint32_t level, uint32_t layer,
                             void *out_pixels);
 
